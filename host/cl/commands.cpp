@@ -1,0 +1,142 @@
+#include "cl/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "cl/error_names.hpp"
+
+namespace raya {
+namespace {
+
+// Events hold driver memory until their times are read, so a long run stops for a moment every so many commands.
+constexpr std::size_t kMaxPending = 4096;
+
+}  // namespace
+
+Session::Session(const cl::Device& device, Timing timing)
+    : device_(device), info_(device_info(device)), profile_(timing == Timing::kOn && info_.profiling) {
+    guarded(fmt::format("opening a session on {} {}", info_.platform, info_.name), [this] {
+        context_ = cl::Context(device_);
+        queue_ = cl::CommandQueue(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
+    });
+}
+
+Program Session::build(const std::string& name, const std::string& source,
+                       const std::vector<std::string>& options) const {
+    return Program(context_, device_, name, source, options);
+}
+
+cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const {
+    if (count == 0) throw std::invalid_argument(fmt::format("buffer '{}': OpenCL has no buffers of no elements", name));
+    if (count > info_.max_allocation_bytes / element_bytes) {
+        throw DeviceError(fmt::format(
+            "buffer '{}' needs {} elements of {} bytes = {:.0f} bytes; {} allows {} bytes for one "
+            "buffer; remedy: fewer pixels, a smaller scene, or another device",
+            name, count, element_bytes, double(count) * double(element_bytes), info_.name, info_.max_allocation_bytes));
+    }
+    return guarded(fmt::format("allocating buffer '{}' ({} bytes)", name, count * element_bytes),
+                   [&] { return cl::Buffer(context_, CL_MEM_READ_WRITE, count * element_bytes); });
+}
+
+void Session::check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
+                          std::size_t count) {
+    if (offset > size || count > size - offset) {
+        throw std::out_of_range(fmt::format("'{}': {} elements from element {} on do not lie in buffer '{}' of {}",
+                                            label, count, offset, buffer, size));
+    }
+}
+
+template <class Enqueue>
+void Session::submit(const std::string& what, CommandRecord record, Enqueue&& enqueue) {
+    if (pending_.size() >= kMaxPending) finish();
+    cl::Event event;
+    guarded(what, [&] { enqueue(&event); });
+    pending_.push_back({std::move(record), std::move(event)});
+}
+
+void Session::launch_kernel(const std::string& label, const cl::Kernel& kernel, const std::string& kernel_name,
+                            std::size_t groups, std::size_t group_size, std::size_t local_bytes) {
+    const std::string what =
+        fmt::format("'{}': launching kernel '{}' ({} groups of {} work-items)", label, kernel_name, groups, group_size);
+    if (groups == 0 || group_size == 0) throw std::invalid_argument(what + ": there is nothing to run");
+    if (local_bytes > info_.local_memory_bytes) {
+        throw DeviceError(
+            fmt::format("{}: needs {} bytes of local memory, {} has {} for a work-group; remedy: keep "
+                        "these words in global memory, or choose another device",
+                        what, local_bytes, info_.name, info_.local_memory_bytes));
+    }
+    submit(what, {.label = label, .kind = "kernel"}, [&](cl::Event* event) {
+        queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
+                                    nullptr, event);
+    });
+}
+
+void Session::write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
+                          std::size_t bytes, const void* from) {
+    if (bytes == 0) return;
+    submit(fmt::format("'{}': writing {} bytes into buffer '{}'", label, bytes, name),
+           {.label = label, .kind = "write", .bytes = bytes},
+           [&](cl::Event* event) { queue_.enqueueWriteBuffer(to, CL_TRUE, offset, bytes, from, nullptr, event); });
+}
+
+void Session::read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+                         std::size_t bytes, void* to) {
+    if (bytes == 0) return;
+    submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
+           {.label = label, .kind = "read", .bytes = bytes},
+           [&](cl::Event* event) { queue_.enqueueReadBuffer(from, CL_TRUE, offset, bytes, to, nullptr, event); });
+}
+
+void Session::copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes) {
+    if (bytes == 0) return;
+    submit(fmt::format("'{}': copying {} bytes of buffer '{}' into buffer '{}'", label, bytes, from.name, to.name),
+           {.label = label, .kind = "copy", .bytes = bytes}, [&](cl::Event* event) {
+               queue_.enqueueCopyBuffer(from.memory, to.memory, from.offset, to.offset, bytes, nullptr, event);
+           });
+}
+
+void Session::fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
+                         const void* value, std::size_t value_bytes) {
+    submit(fmt::format("'{}': filling buffer '{}' of {} bytes", label, name, bytes),
+           {.label = label, .kind = "fill", .bytes = bytes}, [&](cl::Event* event) {
+               cl_event filled = nullptr;
+               const cl_int code =
+                   clEnqueueFillBuffer(queue_(), to(), value, value_bytes, 0, bytes, 0, nullptr, &filled);
+               if (code != CL_SUCCESS) throw cl::Error(code, "clEnqueueFillBuffer");
+               *event = cl::Event(filled);
+           });
+}
+
+CommandRecord Session::finished(const Pending& pending) const {
+    CommandRecord record = pending.record;
+    guarded(fmt::format("'{}' ({})", record.label, record.kind), [&] {
+        const cl_int status = pending.event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
+        if (status < 0) throw cl::Error(status, "the command");
+        if (!profile_.timed()) return;
+        record.queued = pending.event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>();
+        record.submitted = pending.event.getProfilingInfo<CL_PROFILING_COMMAND_SUBMIT>();
+        record.started = pending.event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+        record.ended = pending.event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    });
+    return record;
+}
+
+void Session::finish() {
+    const std::vector<Pending> done = std::exchange(pending_, {});  // also gone if one of them has failed
+    guarded("waiting for the device", [this] { queue_.finish(); });
+    for (const Pending& command : done) profile_.add(finished(command));
+}
+
+const Profile& Session::profile() {
+    finish();
+    return profile_;
+}
+
+void Session::clear_profile() {
+    finish();
+    profile_.clear();
+}
+
+}  // namespace raya

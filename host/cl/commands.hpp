@@ -1,0 +1,131 @@
+// A session on one device: every buffer, program and command is made here; every command has a label and is profiled.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "cl/buffer.hpp"
+#include "cl/device.hpp"
+#include "cl/kernel.hpp"
+#include "cl/opencl.hpp"
+#include "cl/profile.hpp"
+#include "cl/program.hpp"
+
+namespace raya {
+
+/// Whether the device is asked to measure its commands (a device that cannot is not asked).
+enum class Timing { kOn, kOff };
+
+/// A context and an in-order queue: commands run one after another, in the order in which they were given.
+///
+/// All offsets and counts are elements. A range beyond a buffer's end throws std::out_of_range, an empty launch or
+/// buffer std::invalid_argument: both are mistakes in the host program. What the driver refuses throws DeviceError with
+/// call, label, buffers or kernel, error name and remedy. A transfer of no elements does nothing and leaves no record.
+class Session {
+  public:
+    explicit Session(const cl::Device& device, Timing timing = Timing::kOn);
+    Session(Session&&) = default;  // not copied: a copy would report the same commands twice
+
+    const DeviceInfo& device() const { return info_; }
+
+    /// `count` > 0 elements; `name` is for messages. DeviceError if larger than the device allows for one buffer.
+    template <class T>
+    Buffer<T> buffer(const std::string& name, std::size_t count) const {
+        return Buffer<T>(allocate(name, count, sizeof(T)), name, count);
+    }
+
+    /// See Program.
+    Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
+
+    /// Runs `groups` work-groups of `group_size` work-items each (one dimension). Does not wait.
+    template <class... Params>
+    void launch(const std::string& label, Kernel<Params...>& kernel, std::size_t groups, std::size_t group_size,
+                std::type_identity_t<Params>... args) {
+        kernel.set_arguments(args...);
+        const std::size_t local_bytes = (local_bytes_of(args) + ... + 0);
+        launch_kernel(label, kernel.handle(), kernel.name(), groups, group_size, local_bytes);
+    }
+
+    /// Host to device: `from` into `to` from element `offset` on. Waits, so `from` may change afterwards.
+    template <class T>
+    void write(const std::string& label, Buffer<T>& to, std::span<const std::type_identity_t<T>> from,
+               std::size_t offset = 0) {
+        check_range(label, to.name(), to.size(), offset, from.size());
+        write_bytes(label, to.memory(), to.name(), offset * sizeof(T), from.size_bytes(), from.data());
+    }
+
+    /// Device to host: `from` from element `offset` on, as many as `to` holds. Waits.
+    template <class T>
+    void read(const std::string& label, const Buffer<T>& from, std::span<std::type_identity_t<T>> to,
+              std::size_t offset = 0) {
+        check_range(label, from.name(), from.size(), offset, to.size());
+        read_bytes(label, from.memory(), from.name(), offset * sizeof(T), to.size_bytes(), to.data());
+    }
+
+    /// Device to device: `count` elements; within one buffer the two ranges must not overlap. Does not wait.
+    template <class T>
+    void copy(const std::string& label, const Buffer<T>& from, std::size_t from_offset, Buffer<T>& to,
+              std::size_t to_offset, std::size_t count) {
+        check_range(label, from.name(), from.size(), from_offset, count);
+        check_range(label, to.name(), to.size(), to_offset, count);
+        copy_bytes(label, {from.memory(), from.name(), from_offset * sizeof(T)},
+                   {to.memory(), to.name(), to_offset * sizeof(T)}, count * sizeof(T));
+    }
+
+    /// Sets every element of `to` to `value`. Does not wait.
+    template <class T>
+    void fill(const std::string& label, Buffer<T>& to, const std::type_identity_t<T>& value) {
+        static_assert(sizeof(T) <= 128 && (sizeof(T) & (sizeof(T) - 1)) == 0,
+                      "OpenCL fills with 1, 2, 4, ... 128 bytes");
+        fill_bytes(label, to.memory(), to.name(), to.bytes(), &value, sizeof(T));
+    }
+
+    /// Waits for all commands. DeviceError names the label of a command that failed on the device.
+    void finish();
+
+    /// All commands so far; waits for them.
+    const Profile& profile();
+
+    /// Forgets all commands so far, after they have finished: what follows is a measurement of its own.
+    void clear_profile();
+
+  private:
+    struct Place {  // one end of a copy
+        const cl::Buffer& memory;
+        const std::string& name;
+        std::size_t offset;  // bytes
+    };
+    struct Pending {  // a command whose times are not known yet
+        CommandRecord record;
+        cl::Event event;
+    };
+
+    static void check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
+                            std::size_t count);
+    cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
+    void launch_kernel(const std::string& label, const cl::Kernel& kernel, const std::string& kernel_name,
+                       std::size_t groups, std::size_t group_size, std::size_t local_bytes);
+    void write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
+                     std::size_t bytes, const void* from);
+    void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+                    std::size_t bytes, void* to);
+    void copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes);
+    void fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
+                    const void* value, std::size_t value_bytes);
+
+    /// Gives one command to the queue by `enqueue(cl::Event*)` and notes it; `what` is for the message of a failure.
+    template <class Enqueue>
+    void submit(const std::string& what, CommandRecord record, Enqueue&& enqueue);
+    CommandRecord finished(const Pending& pending) const;
+
+    cl::Device device_;
+    DeviceInfo info_;
+    cl::Context context_;
+    cl::CommandQueue queue_;
+    std::vector<Pending> pending_;
+    Profile profile_;
+};
+
+}  // namespace raya

@@ -1,0 +1,153 @@
+#include "cl/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+
+#include "cl/error_names.hpp"
+
+namespace raya {
+namespace {
+
+std::string type_name(cl_device_type type) {
+    if (type & CL_DEVICE_TYPE_GPU) return "gpu";
+    if (type & CL_DEVICE_TYPE_CPU) return "cpu";
+    return "other";
+}
+
+std::string lower_case(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+std::string full_name(const DeviceInfo& device) { return device.platform + " " + device.name; }
+
+bool is_usable(const DeviceInfo& device) { return device.available && device.compiler_available; }
+
+std::string list_of(const std::vector<DeviceInfo>& devices) {
+    std::string list;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        list += fmt::format("\n  {}: {} ({}{})", i, full_name(devices[i]), devices[i].type,
+                            is_usable(devices[i]) ? "" : ", not usable");
+    }
+    return list;
+}
+
+/// The number that `text` consists of, if it is one.
+std::optional<std::size_t> as_index(const std::string& text) {
+    std::size_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
+std::size_t default_index(const std::vector<DeviceInfo>& devices) {
+    for (const char* type : {"gpu", "cpu", "other"}) {
+        const auto found = std::find_if(devices.begin(), devices.end(), [type](const DeviceInfo& device) {
+            return device.type == type && is_usable(device);
+        });
+        if (found != devices.end()) return std::size_t(found - devices.begin());
+    }
+    throw DeviceError("no OpenCL device is available with a compiler; see clinfo; there are:" + list_of(devices));
+}
+
+std::vector<cl::Platform> all_platforms() {
+    std::vector<cl::Platform> platforms;
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error& error) {
+        constexpr cl_int kPlatformNotFound = -1001;  // from the ICD loader: no driver is installed
+        if (error.err() != kPlatformNotFound) throw device_error(error.what(), error.err(), "looking for platforms");
+    }
+    return platforms;
+}
+
+std::vector<cl::Device> devices_of(const cl::Platform& platform) {
+    std::vector<cl::Device> devices;
+    try {
+        platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+    } catch (const cl::Error& error) {
+        if (error.err() != CL_DEVICE_NOT_FOUND) throw device_error(error.what(), error.err(), "looking for devices");
+    }
+    return devices;
+}
+
+}  // namespace
+
+std::vector<cl::Device> all_devices() {
+    std::vector<cl::Device> all;
+    for (const cl::Platform& platform : all_platforms()) {
+        const std::vector<cl::Device> devices = devices_of(platform);
+        all.insert(all.end(), devices.begin(), devices.end());
+    }
+    return all;
+}
+
+DeviceInfo device_info(const cl::Device& device) {
+    return guarded("asking a device for its properties", [&device] {
+        const cl_device_fp_config floats = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>();
+        DeviceInfo info;
+        info.name = device.getInfo<CL_DEVICE_NAME>();
+        info.platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>();
+        info.version = device.getInfo<CL_DEVICE_VERSION>();
+        info.driver = device.getInfo<CL_DRIVER_VERSION>();
+        info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
+        info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+        info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+        info.local_memory_is_dedicated = device.getInfo<CL_DEVICE_LOCAL_MEM_TYPE>() == CL_LOCAL;
+        info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+        info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+        info.max_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+        info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+        info.preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>();
+        info.correctly_rounded_divide_sqrt = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+        info.fused_multiply_add = (floats & CL_FP_FMA) != 0;
+        info.denormals = (floats & CL_FP_DENORM) != 0;
+        info.round_to_nearest = (floats & CL_FP_ROUND_TO_NEAREST) != 0;
+        info.inf_nan = (floats & CL_FP_INF_NAN) != 0;
+        info.profiling = (device.getInfo<CL_DEVICE_QUEUE_PROPERTIES>() & CL_QUEUE_PROFILING_ENABLE) != 0;
+        info.available = device.getInfo<CL_DEVICE_AVAILABLE>() == CL_TRUE;
+        info.compiler_available = device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() == CL_TRUE;
+        return info;
+    });
+}
+
+std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
+    if (devices.empty()) {
+        throw DeviceError(
+            "no OpenCL device found; remedy: install a driver (Debian: apt install pocl-opencl-icd), look at the "
+            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists");
+    }
+    if (wanted.empty()) return default_index(devices);
+    const std::optional<std::size_t> number = as_index(wanted);
+    const auto found =
+        number && *number < devices.size()
+            ? devices.begin() + std::ptrdiff_t(*number)
+            : std::find_if(devices.begin(), devices.end(), [part = lower_case(wanted)](const DeviceInfo& device) {
+                  return lower_case(full_name(device)).find(part) != std::string::npos;
+              });
+    if (found == devices.end()) {
+        throw DeviceError(fmt::format("no OpenCL device matches '{}'; remedy: a number or a part of a name from:{}",
+                                      wanted, list_of(devices)));
+    }
+    if (!is_usable(*found)) {
+        throw DeviceError(fmt::format("OpenCL device {} is {}; remedy: choose another from:{}", full_name(*found),
+                                      found->available ? "without a compiler" : "not available", list_of(devices)));
+    }
+    return std::size_t(found - devices.begin());
+}
+
+cl::Device choose_device(const std::string& name_part) {
+    const std::vector<cl::Device> devices = all_devices();
+    std::vector<DeviceInfo> infos;
+    for (const cl::Device& device : devices) infos.push_back(device_info(device));
+    const char* fallback = std::getenv("RAYA_DEVICE");
+    const std::string wanted = name_part.empty() && fallback != nullptr ? fallback : name_part;
+    return devices[device_index(wanted, infos)];
+}
+
+}  // namespace raya

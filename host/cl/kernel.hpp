@@ -1,0 +1,73 @@
+// A kernel with its argument types: a call with other types does not compile, a kernel with another number of
+// parameters is refused when it is looked up (Program::kernel).
+#pragma once
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "cl/buffer.hpp"
+#include "cl/error_names.hpp"
+#include "cl/opencl.hpp"
+
+namespace raya {
+
+/// Args, in the kernel's order: `const Buffer<T>&` for an input, `Buffer<T>&` for an output, LocalMemory<T> for
+/// __local memory, and plain values such as cl_uint or cl_float for the rest.
+template <class... Args>
+class Kernel {
+  public:
+    static constexpr std::size_t kArgumentCount = sizeof...(Args);
+
+    Kernel(cl::Kernel kernel, std::string name) : kernel_(std::move(kernel)), name_(std::move(name)) {}
+
+    const std::string& name() const { return name_; }
+    const cl::Kernel& handle() const { return kernel_; }
+
+    /// Sets all arguments for the launches that follow; DeviceError names the kernel and the argument's number from 0.
+    void set_arguments(Args... args) {
+        cl_uint index = 0;
+        (set_argument(index++, args), ...);
+    }
+
+  private:
+    template <class T>
+    void set_argument(cl_uint index, const Buffer<T>& buffer) {
+        set_bytes(index, sizeof(cl_mem), &buffer.memory()());
+    }
+
+    template <class T>
+    void set_argument(cl_uint index, const LocalMemory<T>& local) {
+        set_bytes(index, local.bytes(), nullptr);
+    }
+
+    template <class T>
+    void set_argument(cl_uint index, const T& value) {
+        static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::is_same_v<T, bool>,
+                      "OpenCL takes neither host pointers nor bool as kernel arguments");
+        set_bytes(index, sizeof(T), &value);
+    }
+
+    void set_bytes(cl_uint index, std::size_t bytes, const void* value) {
+        guarded(fmt::format("setting argument {} of kernel '{}' ({} bytes)", index, name_, bytes),
+                [&] { return kernel_.setArg(index, bytes, value); });
+    }
+
+    cl::Kernel kernel_;
+    std::string name_;
+};
+
+/// The bytes of __local memory that one kernel argument asks for: none, unless it is a LocalMemory.
+template <class T>
+std::size_t local_bytes_of(const T&) {
+    return 0;
+}
+
+template <class T>
+std::size_t local_bytes_of(const LocalMemory<T>& local) {
+    return local.bytes();
+}
+
+}  // namespace raya

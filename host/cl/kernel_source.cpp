@@ -1,0 +1,64 @@
+#include "cl/kernel_source.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "error.hpp"
+
+namespace raya {
+namespace {
+
+std::string read_kernel_file(const std::string& file, const std::filesystem::path& folder) {
+    if (folder.empty()) {
+        const auto found = embedded_kernel_files().find(file);
+        if (found == embedded_kernel_files().end()) throw UserError(fmt::format("no kernel file '{}' in this program", file));
+        return found->second;
+    }
+    std::ifstream in(folder / file, std::ios::binary);
+    if (!in) {
+        throw UserError(fmt::format("cannot read kernel file '{}': --kernel-dir must be a folder like the project's kernels/",
+                                    (folder / file).string()));
+    }
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+// The file that a line includes, empty for any other line.
+std::string included_file(const std::string& line) {
+    constexpr std::string_view kInclude = "#include \"";
+    if (!line.starts_with(kInclude)) return {};
+    return line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
+}
+
+void append(std::string& source, const std::string& file, const std::filesystem::path& folder, std::set<std::string>& seen) {
+    if (!seen.insert(file).second) return;
+    std::istringstream text(read_kernel_file(file, folder));
+    source += fmt::format("#line 1 \"{}\"\n", file);
+    int number = 0;
+    for (std::string line; std::getline(text, line);) {
+        ++number;
+        const std::string included = included_file(line);
+        if (included.empty()) {
+            source += line + '\n';
+        } else {
+            append(source, included, folder, seen);
+            source += fmt::format("#line {} \"{}\"\n", number + 1, file);
+        }
+    }
+}
+
+}  // namespace
+
+std::string kernel_source(const std::string& file, const std::filesystem::path& folder) {
+    std::string source;
+    std::set<std::string> seen;
+    append(source, file, folder, seen);
+    return source;
+}
+
+}  // namespace raya

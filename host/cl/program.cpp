@@ -1,0 +1,67 @@
+#include "cl/program.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "cl/error_names.hpp"
+
+namespace raya {
+namespace {
+
+std::string joined(const std::vector<std::string>& options) { return fmt::format("{}", fmt::join(options, " ")); }
+
+std::string log_of(const cl::Program& program, const cl::Device& device) {
+    try {
+        return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    } catch (const cl::Error& error) {  // the build's own error matters more than a missing log
+        return fmt::format("(the driver gave no log: {})", error_name(error.err()));
+    }
+}
+
+std::string name_of(const cl::Device& device) {
+    const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
+    return platform.getInfo<CL_PLATFORM_NAME>() + " " + device.getInfo<CL_DEVICE_NAME>();
+}
+
+}  // namespace
+
+Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
+                 const std::vector<std::string>& options)
+    : name_(std::move(name)), options_(joined(options)) {
+    const std::string what = fmt::format("building program '{}'", name_);
+    const std::string device_name = guarded(what, [&] {
+        program_ = cl::Program(context, source);
+        return name_of(device);
+    });
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        program_.build(device, options_.c_str());
+    } catch (const cl::Error& error) {
+        throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}",
+                                      device_error(error.what(), error.err(), what).what(), device_name, options_,
+                                      log_of(program_, device)));
+    }
+    build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    log_ = log_of(program_, device);
+}
+
+cl::Kernel Program::checked_kernel(const std::string& kernel_name, std::size_t argument_count) const {
+    const std::string kernels = guarded(fmt::format("listing the kernels of program '{}'", name_),
+                                        [&] { return program_.getInfo<CL_PROGRAM_KERNEL_NAMES>(); });
+    const std::string what = fmt::format("kernel '{}' of program '{}' (kernels: {})", kernel_name, name_, kernels);
+    return guarded(what, [&] {
+        cl::Kernel kernel(program_, kernel_name.c_str());
+        const std::size_t expected = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+        if (expected != argument_count) {
+            throw DeviceError(
+                fmt::format("kernel '{}' of program '{}' has {} parameters, but the host passes {}; remedy: make "
+                            "the list of types on the host and the kernel's parameters agree",
+                            kernel_name, name_, expected, argument_count));
+        }
+        return kernel;
+    });
+}
+
+}  // namespace raya

@@ -1,0 +1,19 @@
+// The commands of raya. Each file of this folder adds one to the parser and runs it; nothing else knows them.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace raya {
+
+/// Parses the command line, runs the command and returns the exit code: 0 done, 2 for a mistake in options or input, 3 for trouble with the
+/// device, 1 for a fault of our own. Messages go to stderr.
+int run_program(int argc, char** argv);
+
+void add_render_command(CLI::App& program);
+void add_devices_command(CLI::App& program);
+void add_generate_command(CLI::App& program);
+void add_bench_command(CLI::App& program);
+
+}  // namespace raya

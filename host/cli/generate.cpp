@@ -1,0 +1,56 @@
+// raya generate: scenes that a program makes.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/parse.hpp"
+#include "report/whole_file.hpp"
+#include "scene/generate.hpp"
+#include "scene/nff_writer.hpp"
+
+namespace raya {
+namespace {
+
+struct GenerateOptions {
+    std::string output;
+    int level = 4, count = 0;
+    std::string voxels = "4x4x4";
+    std::uint64_t seed = 1;
+};
+
+CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help) {
+    CLI::App* kind = command.add_subcommand(name, help);
+    kind->add_option("-o,--output", options.output, "NFF file to write")->required()->type_name("SCENE.nff");
+    return kind;
+}
+
+}  // namespace
+
+void add_generate_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("generate", "Write a scene made by a program");
+    command->require_subcommand(1);
+    const auto options = std::make_shared<GenerateOptions>();
+
+    CLI::App* balls = add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square");
+    balls->add_option("--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")->capture_default_str();
+    balls->callback([options] { write_whole_file(options->output, write_nff(generate_balls(options->level))); });
+
+    CLI::App* uniform = add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube");
+    uniform->add_option("N", options->count, "Spheres, 1..1000000")->required();
+    uniform->add_option("--voxels", options->voxels, "Voxels along x, y and z, 1..256 each")->type_name("XxYxZ")->required();
+    uniform->callback([options] {
+        const auto sides = parse_sizes("--voxels", options->voxels, 3);
+        const Scene scene = generate_uniform(options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
+        write_whole_file(options->output, write_nff(scene));
+    });
+
+    CLI::App* random = add_kind(*command, *options, "random", "N spheres anywhere in a cube, the same for the same seed");
+    random->add_option("N", options->count, "Spheres, 1..1000000")->required();
+    random->add_option("--seed", options->seed, "Seed of the random numbers")->capture_default_str();
+    random->callback([options] { write_whole_file(options->output, write_nff(generate_random(options->count, options->seed))); });
+
+    CLI::App* centre = add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
+    centre->callback([options] { write_whole_file(options->output, write_nff(generate_centre())); });
+}
+
+}  // namespace raya

@@ -1,0 +1,95 @@
+// raya render: a scene file in, an image and a load report out.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/render_options.hpp"
+#include "image/image_io.hpp"
+#include "report/progress.hpp"
+#include "report/render_report.hpp"
+#include "report/whole_file.hpp"
+#include "scene/nff_reader.hpp"
+
+namespace raya {
+namespace {
+
+struct RenderCommand {
+    RenderOptions render;
+    std::string image, cost, report;
+    bool profile = false, quiet = false;
+};
+
+void check_targets(const RenderCommand& command) {
+    check_writable_target(command.image, kImageExtensions);
+    if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
+    if (!command.report.empty()) check_writable(command.report);
+}
+
+RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device, const RingResult& result) {
+    RenderReport report;
+    report.scene = command.render.scene;
+    report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
+    report.machine = {settings.machine.name,
+                      settings.machine.topology,
+                      command.render.mapping,
+                      command.render.fold,
+                      settings.machine.format,
+                      settings.mapping.pes,
+                      settings.mapping.offset,
+                      settings.bounces,
+                      settings.machine.pe_memory_bytes.value_or(0),
+                      result.pe_memory.bytes()};
+    report.device = {device.name, device.platform, device.version, result.build_options, result.lanes, result.group_size};
+    report.events = result.events;
+    report.load = result.load;
+    report.communication = result.communication;
+    report.measured = {result.build_s, result.render_s, result.commands};
+    return report;
+}
+
+ImageAttributes image_attributes(const RenderReport& report, const std::string& scene) {
+    return {{"scene", scene},
+            {"machine", report.machine.name},
+            {"mapping", report.machine.mapping},
+            {"offset", std::to_string(report.machine.offset)},
+            {"format", report.machine.format},
+            {"u", fmt::format("{:.6f}", report.load.imbalance)}};
+}
+
+void render(const RenderCommand& command) {
+    check_targets(command);
+    const Scene scene = read_nff(command.render.scene);
+    const RingSettings settings = ring_settings(command.render, scene);
+    Session session(choose_device(command.render.device));
+    RingRenderer renderer(session, scene, settings);
+    ProgressBar bar(!command.quiet);
+    const RingResult result = renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
+
+    const RenderReport report = make_report(command, settings, session.device(), result);
+    const ImageAttributes attributes = image_attributes(report, scene.name);
+    write_image(command.image, result.image, attributes);
+    if (!command.cost.empty()) write_image(command.cost, result.cost, attributes);
+    if (!command.report.empty()) write_whole_file(command.report, to_json(report).dump(2) + "\n");
+    if (!command.quiet) fmt::print("{}", human_summary(report));
+    if (command.profile) fmt::print("\n{}", profile_table(report.measured.commands));
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("render", "Render an NFF scene on the ring machine");
+    const auto options = std::make_shared<RenderCommand>();
+    command->add_option("SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")->required()->type_name("SCENE.nff");
+    command->add_option("-o,--output", options->image, "Image to write: .png (sRGB), .exr or .pfm (linear)")->required()->type_name("IMAGE");
+    add_render_options(*command, options->render);
+    command->add_option("--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")->type_name("FILE.exr");
+    command->add_option("--report", options->report, "Write everything that was counted and measured")->type_name("FILE.json");
+    command->add_flag("--profile", options->profile, "Print launches and times of every labelled command");
+    command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
+    command->callback([options] { render(*options); });
+}
+
+}  // namespace raya

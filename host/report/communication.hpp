@@ -1,0 +1,14 @@
+// What went over bus and ring.
+#pragma once
+#include <cstdint>
+
+namespace raya {
+
+/// Transfers and their words, counted where they were made. A word is the machine's: one number.
+struct Communication {
+    std::uint64_t broadcasts = 0, broadcast_words = 0;  // host to all PEs
+    std::uint64_t rotations = 0, rotation_words = 0;    // every PE to its neighbour
+    std::uint64_t gathers = 0, gather_words = 0;        // all PEs to the host
+};
+
+}  // namespace raya

@@ -1,0 +1,27 @@
+// A progress bar for a person at a terminal.
+#pragma once
+#include <chrono>
+#include <cstdio>
+
+namespace raya {
+
+/// Draws on stderr, only if that is a terminal, and only from one second on. Erased when it goes out of scope.
+class ProgressBar {
+  public:
+    explicit ProgressBar(bool wanted);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// Whether there is anybody to show it to.
+    bool active() const { return active_; }
+
+    /// `done`: share of the work, 0..1.
+    void update(double done);
+
+  private:
+    std::chrono::steady_clock::time_point start_;
+    bool active_ = false, drawn_ = false;
+};
+
+}  // namespace raya

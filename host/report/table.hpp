@@ -1,0 +1,11 @@
+// Plain text tables for the terminal.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace raya {
+
+/// The rows under each other, columns two blanks apart; the first row is the header. Cells that look like numbers stand to the right.
+std::string text_table(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace raya

@@ -1,0 +1,135 @@
+#include "report/whole_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <string>
+#include <system_error>
+
+#include "error.hpp"
+
+namespace raya {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr mode_t kFileMode = 0666;  // what open() gives to any new file; the user's umask takes its share
+
+[[noreturn]] void refuse(const fs::path& path, std::string_view reason, std::string_view remedy) {
+    throw UserError(fmt::format("cannot write '{}': {}; {}", path.string(), reason, remedy));
+}
+
+std::string_view remedy_for(int error) {
+    switch (error) {
+        case ENOSPC:
+        case EDQUOT:
+            return "make room there or name a file on another disk";
+        case EFBIG:
+            return "raise the limit on the size of files (ulimit -f) or ask for a smaller file";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return "name a file in a folder that you may write to";
+        default:
+            return "name another file";
+    }
+}
+
+[[noreturn]] void refuse(const fs::path& path, int error) {
+    refuse(path, std::generic_category().message(error), remedy_for(error));
+}
+
+bool may(const fs::path& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+void check_folder(const fs::path& path, const fs::path& folder) {
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (status.type() == fs::file_type::not_found)
+        refuse(path, fmt::format("the folder '{}' does not exist", folder.string()),
+               "make it first (mkdir -p) or name another file");
+    if (error) refuse(path, error.value());
+    if (!fs::is_directory(status))
+        refuse(path, fmt::format("'{}' is not a folder", folder.string()), "name another file");
+    if (!may(folder, W_OK | X_OK))
+        refuse(path, fmt::format("the folder '{}' is not writable", folder.string()),
+               "change its permissions or name a file in another folder");
+}
+
+/// Where the bytes go once `path` has been found writable.
+struct Target {
+    fs::path file;        // symbolic links resolved
+    bool direct = false;  // a device or a pipe: written as it is
+};
+
+Target checked_target(const fs::path& path) {
+    if (path.empty()) refuse(path, "the name is empty", "name a file");
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::is_directory(status) || !path.has_filename()) refuse(path, "it is a folder", "name a file in it");
+    const bool exists = fs::exists(status);
+    if (exists && !may(path, W_OK))
+        refuse(path, "the file exists and is not writable", "change its permissions or name another file");
+    if (exists && !fs::is_regular_file(status)) return {path, true};
+    const fs::path file = exists ? fs::canonical(path, error) : path;
+    if (exists && error) refuse(path, error.value());
+    check_folder(path, folder_of(file));
+    return {file, false};
+}
+
+/// Writes all bytes to the descriptor and closes it. Returns 0 or the errno of what failed.
+int write_and_close(int descriptor, std::string_view bytes) {
+    int error = 0;
+    while (!bytes.empty() && error == 0) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written >= 0)
+            bytes.remove_prefix(static_cast<std::size_t>(written));
+        else if (errno != EINTR)
+            error = errno;
+    }
+    if (::close(descriptor) != 0 && error == 0) error = errno;  // network file systems report a full disk only here
+    return error;
+}
+
+struct TemporaryFile {
+    fs::path path;
+    int descriptor;
+};
+
+/// Opens a new file beside `target`. The name is short, so that it fits wherever the target's own name does.
+TemporaryFile open_temporary(const fs::path& target, const fs::path& shown) {
+    static std::atomic<unsigned> counter{0};
+    while (true) {
+        const fs::path path = folder_of(target) / fmt::format(".raya-{}-{}.tmp", ::getpid(), counter++);
+        const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
+        if (descriptor >= 0) return {path, descriptor};
+        if (errno != EEXIST) refuse(shown, errno);
+    }
+}
+
+void write_direct(const fs::path& path, std::string_view bytes) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) refuse(path, errno);
+    if (const int error = write_and_close(descriptor, bytes)) refuse(path, error);
+}
+
+}  // namespace
+
+void check_writable(const fs::path& path) { checked_target(path); }
+
+void write_whole_file(const fs::path& path, std::string_view bytes) {
+    const Target target = checked_target(path);
+    if (target.direct) return write_direct(path, bytes);
+    const TemporaryFile temporary = open_temporary(target.file, path);
+    int error = write_and_close(temporary.descriptor, bytes);
+    if (error == 0 && std::rename(temporary.path.c_str(), target.file.c_str()) != 0) error = errno;
+    if (error == 0) return;
+    ::unlink(temporary.path.c_str());
+    refuse(path, error);
+}
+
+}  // namespace raya

@@ -1,0 +1,19 @@
+// Output files that appear whole or not at all.
+#pragma once
+#include <filesystem>
+#include <string_view>
+
+namespace raya {
+
+/// Refuses a target that write_whole_file() could not write: a folder, a missing or unwritable folder around it, an
+/// existing file that may not be written. Writes nothing. Throws UserError with file, reason and remedy. For commands
+/// that would rather fail before an hour's work than after it.
+void check_writable(const std::filesystem::path& path);
+
+/// Writes `bytes` to `path`: to a temporary name in the same folder, then renamed, so that nobody ever sees half a file
+/// and an old file stays as it was until the new one is complete. A symbolic link is followed; a device or a pipe
+/// (`/dev/stdout`) is written directly, as there is nothing to rename. Throws UserError with file, reason and remedy,
+/// and then leaves nothing behind.
+void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace raya

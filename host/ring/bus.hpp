@@ -1,0 +1,34 @@
+// The bus: host to all PEs (broadcast) and all PEs to the host (gather), as counted, labelled buffer transfers.
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "cl/commands.hpp"
+#include "report/communication.hpp"
+
+namespace raya {
+
+class Bus {
+  public:
+    Bus(Session& session, Communication& counted) : session_(session), counted_(counted) {}
+
+    /// The same words to every PE. `to` is what all PEs take into their memories when they start.
+    void broadcast(Buffer<std::uint32_t>& to, std::span<const std::uint32_t> words) {
+        session_.write("bus.broadcast", to, words);
+        counted_.broadcasts += 1;
+        counted_.broadcast_words += words.size();
+    }
+
+    /// The blocks of all PEs to the host. `words` of them are pixels; the rest of the blocks is empty.
+    void gather(const Buffer<float>& blocks, std::span<float> to, std::uint64_t words) {
+        session_.read("bus.gather", blocks, to);
+        counted_.gathers += 1;
+        counted_.gather_words += words;
+    }
+
+  private:
+    Session& session_;
+    Communication& counted_;
+};
+
+}  // namespace raya

@@ -1,0 +1,158 @@
+#include "ring/ring_renderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cl/kernel_source.hpp"
+#include "ring/kernel_options.hpp"
+#include "ring/mapping.hpp"
+
+namespace raya {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+JobSettings job_settings(const RingSettings& settings) {
+    return {settings.mapping, settings.sampling, settings.bounces, cycles_of_events()};
+}
+
+// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress bar moves, Ctrl-C is
+// heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few wait for the last.
+std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share) {
+    constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
+    constexpr double kRaysPerPixel = 6;      // of the project's scenes
+    const double tests_of_one = kRaysPerPixel * static_cast<double>(objects) * settings.mapping.pes;
+    const auto affordable = static_cast<std::uint32_t>(std::min(kTestsPerLaunch / tests_of_one, double(share)));
+    return std::clamp(affordable, std::min(8 * lanes, share), share);
+}
+
+}  // namespace
+
+RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
+    : session_(session),
+      settings_(settings),
+      job_(pack_job(scene, job_settings(settings))),
+      share_(largest_share(settings.mapping)),
+      memory_(plan_pe_memory(settings.machine, scene.name, job_.words.size(), settings.bounces, share_)),
+      lanes_(settings.kernels.lanes ? settings.kernels.lanes : default_lanes(session.device())),
+      group_(settings.kernels.group_size ? settings.kernels.group_size : default_group_size(session.device())),
+      slice_(slice_pixels(settings, scene.object_count(), lanes_ * group_, memory_.block_pixels)),
+      words_local_(4 * job_.words.size() + sizeof(cl_uint) <= session.device().local_memory_bytes),
+      bus_(session, communication_),
+      broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.words.size())),
+      pixels_(session.buffer<float>("pixel blocks", 3ull * settings.mapping.pes * memory_.block_pixels)),
+      cycles_(session.buffer<std::uint64_t>("pixel cycles", 1ull * settings.mapping.pes * memory_.block_pixels)),
+      events_(session.buffer<std::uint64_t>("events", 1ull * settings.mapping.pes * group_ * RAYA_EVENTS)) {
+    build();
+}
+
+void RingRenderer::build() {
+    const KernelOptions options{lanes_,       group_, settings_.bounces, words_local_, job_.has_polygons, job_.has_patches,
+                                job_.has_cones};
+    std::vector<std::string> all = build_options(options, session_.device());
+    all.insert(all.end(), settings_.kernels.more_options.begin(), settings_.kernels.more_options.end());
+    const Clock::time_point start = Clock::now();
+    const Program program = session_.build("ring/trace.cl", kernel_source("ring/trace.cl", settings_.kernels.kernel_dir), all);
+    trace_ = std::make_unique<TraceKernel>(
+        program.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, LocalMemory<std::uint32_t>,
+                       Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>("trace"));
+    build_options_ = program.options();
+    // PoCL compiles a kernel's body at its first launch: launch it once for no pixels, so that this counts as building.
+    bus_.broadcast(broadcast_, job_.words);
+    launch_trace("warm-up", 0, 0, 0);
+    session_.finish();
+    build_s_ = seconds_since(start);
+}
+
+void RingRenderer::launch_trace(const std::string& label, std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
+    const LocalMemory<std::uint32_t> memory{words_local_ ? job_.words.size() : 1};
+    session_.launch(label, *trace_, settings_.mapping.pes, group_, broadcast_, static_cast<cl_uint>(job_.words.size()), block,
+                    memory_.block_pixels, begin, end, memory, pixels_, cycles_, events_);
+}
+
+RingResult RingRenderer::render(const ProgressCallback& progress) {
+    session_.clear_profile();
+    communication_ = {};
+    const Clock::time_point start = Clock::now();
+    RingResult result;
+    prepare(result);
+    bus_.broadcast(broadcast_, job_.words);
+    for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) {
+        trace(block, progress);
+        gather(block, result);
+    }
+    collect_events(result);
+    result.render_s = seconds_since(start);
+    describe(result);
+    return result;
+}
+
+void RingRenderer::prepare(RingResult& result) {
+    const raya_mapping& m = settings_.mapping;
+    const std::size_t pixels = std::size_t{m.width} * m.height;
+    result.image = {static_cast<int>(m.width), static_cast<int>(m.height), std::vector<float>(3 * pixels)};
+    result.cost = {static_cast<int>(m.width), static_cast<int>(m.height), std::vector<float>(pixels)};
+    session_.fill("clear counters", events_, 0);
+}
+
+void RingRenderer::trace(std::uint32_t block, const ProgressCallback& progress) {
+    const std::uint32_t end = std::min(share_, block + memory_.block_pixels);
+    for (std::uint32_t begin = block; begin < end; begin += slice_) {
+        const std::uint32_t until = std::min(end, begin + slice_);
+        launch_trace("trace", block, begin, until);
+        if (!progress) continue;
+        session_.finish();
+        progress(static_cast<double>(until) / share_);
+    }
+}
+
+void RingRenderer::gather(std::uint32_t block, RingResult& result) {
+    const raya_mapping& m = settings_.mapping;
+    const std::size_t capacity = memory_.block_pixels;
+    std::vector<float> pixels(3 * capacity * m.pes);
+    std::vector<std::uint64_t> cycles(capacity * m.pes);
+    std::uint64_t owned = 0;
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
+        owned += share > block ? std::min<std::uint64_t>(share - block, capacity) : 0;
+    }
+    bus_.gather(pixels_, pixels, 3 * owned);
+    session_.read("read cost", cycles_, cycles);
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const raya_share share = raya_share_of(m, pe);
+        const std::uint32_t end = std::min(raya_share_size(share), block + memory_.block_pixels);
+        for (std::uint32_t k = block; k < end; ++k) {
+            const raya_pixel at = raya_pixel_of(m, share, k);
+            const std::size_t to = std::size_t{at.row} * m.width + at.column, from = pe * capacity + (k - block);
+            std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3, result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
+            result.cost.values[to] = static_cast<float>(cycles[from]);
+        }
+    }
+}
+
+void RingRenderer::collect_events(RingResult& result) {
+    std::vector<std::uint64_t> counted(events_.size());
+    session_.read("read counters", events_, counted);
+    const auto cycles = cycles_of_events();
+    std::vector<std::uint64_t> loads(settings_.mapping.pes);
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+        const std::size_t event = i % RAYA_EVENTS;
+        result.events[event] += counted[i];
+        loads[i / RAYA_EVENTS / group_] += cycles[event] * counted[i];
+    }
+    result.load = load_of(std::move(loads));
+}
+
+void RingRenderer::describe(RingResult& result) {
+    result.communication = communication_;
+    result.pe_memory = memory_;
+    result.lanes = lanes_;
+    result.group_size = group_;
+    result.build_options = build_options_;
+    result.build_s = build_s_;
+    result.commands = session_.profile().summary();
+}
+
+}  // namespace raya

@@ -1,0 +1,36 @@
+// Scenes that a program makes. Each is a pure function of its arguments, the same on every platform: coordinates are
+// rounded to decimals, which also keeps the files short. Surfaces are shared (share_surfaces).
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "scene/scene.hpp"
+
+namespace raya {
+
+inline constexpr int kHighestBallsLevel = 6;      // 597,871 spheres
+inline constexpr int kMostSpheres = 1'000'000;    // of uniform and random
+inline constexpr int kMostVoxelsAlongAxis = 256;  // of uniform
+inline constexpr int kMostVoxels = 1'048'576;     // of uniform
+
+/// SPD's `balls`, the sphereflake: every sphere carries nine of a third of its radius. 9^0 + ... + 9^level spheres
+/// above one square polygon, three lights. Same spheres in the same order as SPD 3.9 writes (E. Haines). Throws
+/// UserError unless 0 <= level <= 6.
+Scene generate_balls(int level);
+
+/// `count` matt spheres in the cube [-1, 1]^3, spread evenly over x * y * z voxels: every voxel holds floor or ceil of
+/// count / voxels, each sphere lies wholly inside its voxel, and no two touch or are alike. One light. Throws UserError
+/// unless 1 <= count <= 1,000,000, 1 <= voxels along each axis <= 256 and there are at most 1,048,576 voxels.
+Scene generate_uniform(int count, std::array<int, 3> voxels);
+
+/// `count` spheres with centres anywhere in the cube [-1, 1]^3, radii from a half to one and a half of what would fill
+/// a twentieth of it, at most 0.6; they may overlap. Twelve surfaces: matt, glossy and mirroring. Throws UserError
+/// unless 1 <= count <= 1,000,000.
+Scene generate_random(int count, std::uint64_t seed);
+
+/// The project's main scene, of the kind on which static distribution does worst (Kohata & Ito, IPSJ Journal 1993):
+/// glass and mirror spheres crowded about the centre of the image, above a checkered plane that costs little. 256 x
+/// 256.
+Scene generate_centre();
+
+}  // namespace raya

@@ -1,0 +1,280 @@
+#include "scene/nff_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cerrno>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "error.hpp"
+#include "scene/nff_tokens.hpp"
+#include "scene/outline.hpp"
+
+namespace raya {
+namespace {
+
+constexpr int kLargestSide = 16384;     // pixels
+constexpr double kLargestShare = 100;   // Kd, Ks, T; more than 1 is unphysical, far more is a typing error
+constexpr double kLeastUpAngle = 1e-6;  // sine of the angle between the gaze and up, below which up is no help
+constexpr int kMostVertices = 1'000'000'000;
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return lower;
+}
+
+class NffReader {
+  public:
+    NffReader(std::string_view text, const std::string& name) : tokens_(text, name) {
+        scene_.name = std::filesystem::path(name).filename().string();
+        scene_.surfaces.emplace_back();  // for objects before the first `f`
+    }
+
+    Scene read() {
+        if (lower_case(tokens_.peek().text) == "nff")
+            refuse("this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. Haines's NFF");
+        while (!tokens_.peek().text.empty()) read_entity();
+        const int end = tokens_.peek().line;
+        if (checker_) tokens_.refuse(checker_line_, "no plane or polygon follows this '#raya checker'");
+        if (!has_view_) tokens_.refuse(end, "no 'v': the file must say from where to look");
+        if (scene_.object_count() == 0) tokens_.refuse(end, "no object: nothing could be seen");
+        share_surfaces(scene_);
+        return std::move(scene_);
+    }
+
+  private:
+    [[noreturn]] void refuse(std::string_view reason) const { tokens_.refuse(tokens_.entity_line(), reason); }
+
+    Vec3 read_vector(std::string_view what) {
+        const double x = tokens_.take_number(what);
+        const double y = tokens_.take_number(what);
+        const double z = tokens_.take_number(what);
+        return {x, y, z};
+    }
+
+    Colour read_colour(std::string_view what) {
+        const Colour colour = read_vector(what);
+        if (std::min({colour.x, colour.y, colour.z}) < 0) refuse(fmt::format("{} is negative", what));
+        return colour;
+    }
+
+    double read_share(std::string_view what) {
+        const double share = tokens_.take_number(what);
+        if (share < 0 || share > kLargestShare)
+            refuse(fmt::format("{} is {}: must lie in 0..{}", what, share, kLargestShare));
+        return share;
+    }
+
+    void read_entity() {
+        struct Entity {
+            std::string_view keyword;
+            void (NffReader::*read)();
+        };
+        static constexpr std::array<Entity, 9> kEntities{{{"v", &NffReader::read_view},
+                                                          {"b", &NffReader::read_background},
+                                                          {"l", &NffReader::read_light},
+                                                          {"f", &NffReader::read_surface},
+                                                          {"s", &NffReader::read_sphere},
+                                                          {"p", &NffReader::read_flat_polygon},
+                                                          {"pp", &NffReader::read_patch},
+                                                          {"c", &NffReader::read_cone},
+                                                          {"#raya", &NffReader::read_directive}}};
+        const bool number = tokens_.number_follows();
+        const std::string_view keyword = tokens_.take_keyword();
+        for (const Entity& entity : kEntities)
+            if (entity.keyword == keyword) return (this->*entity.read)();
+        if (number) refuse(quoted(keyword) + " where an entity should start: has the one before too many numbers?");
+        refuse("unknown entity " + quoted(keyword) + "; NFF has v b l f s p pp c");
+    }
+
+    void read_view() {
+        static constexpr std::array<std::string_view, 6> kParts{"from", "at", "up", "angle", "hither", "resolution"};
+        if (has_view_) refuse("a second 'v': a scene has one viewpoint");
+        View& view = scene_.view;
+        std::bitset<kParts.size()> seen;
+        while (!seen.all()) {
+            const auto part = std::find(kParts.begin(), kParts.end(), tokens_.peek().text);
+            const auto index = static_cast<std::size_t>(part - kParts.begin());
+            if (part == kParts.end()) refuse_incomplete_view(kParts, seen);
+            if (seen[index]) tokens_.refuse(tokens_.peek().line, fmt::format("'{}' stands twice in 'v'", *part));
+            seen.set(index);
+            tokens_.take_word(*part);
+            if (*part == "from") view.from = read_vector("from");
+            if (*part == "at") view.at = read_vector("at");
+            if (*part == "up") view.up = read_vector("up");
+            if (*part == "angle") view.angle_degrees = tokens_.take_number("angle");
+            if (*part == "hither") view.hither = tokens_.take_number("hither");
+            if (*part == "resolution") {
+                view.width = tokens_.take_integer("the width", 1, kLargestSide);
+                view.height = tokens_.take_integer("the height", 1, kLargestSide);
+            }
+        }
+        check_view(view);
+        has_view_ = true;
+    }
+
+    template <std::size_t N>
+    [[noreturn]] void refuse_incomplete_view(const std::array<std::string_view, N>& parts, const std::bitset<N>& seen) {
+        std::string missing;
+        for (std::size_t i = 0; i < N; ++i)
+            if (!seen[i]) missing += fmt::format(" {}", parts[i]);
+        const NffToken& token = tokens_.peek();
+        const std::string found = token.text.empty() ? "the file ends" : quoted(token.text) + " follows";
+        tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}, but still missing:{}", found, missing));
+    }
+
+    void check_view(const View& view) const {
+        const Vec3 gaze = view.at - view.from;
+        if (gaze.length() < kSmallestLength) refuse("'from' and 'at' are the same point");
+        if (!(view.angle_degrees > 0 && view.angle_degrees < 180))
+            refuse(fmt::format("the angle is {}: must lie between 0 and 180 degrees", view.angle_degrees));
+        if (unit_vector(gaze).cross(unit_vector(view.up)).length() < kLeastUpAngle)
+            refuse("'up' is zero or points along the gaze; turn it");
+    }
+
+    void read_background() {
+        if (has_background_) refuse("a second 'b': a scene has one background");
+        scene_.background = read_colour("the background colour");
+        has_background_ = true;
+    }
+
+    void read_light() {
+        Light light{read_vector("the position"), {}};
+        if (tokens_.number_follows()) light.colour = read_colour("the light's colour");
+        scene_.lights.push_back(light);
+    }
+
+    void read_surface() {
+        Surface surface;
+        surface.colour = read_colour("the colour");
+        surface.diffuse = read_share("Kd");
+        surface.specular = read_share("Ks");
+        surface.shine = tokens_.take_number("Shine");
+        surface.transmittance = read_share("T");
+        surface.refraction = tokens_.take_number("the index of refraction");
+        if (surface.shine < 0) refuse(fmt::format("Shine is {}: must not be negative", surface.shine));
+        if (surface.transmittance > 0 && surface.refraction <= 0)
+            refuse(fmt::format("the index of refraction is {}: must be positive where T > 0", surface.refraction));
+        current_surface_ = static_cast<int>(scene_.surfaces.size());
+        scene_.surfaces.push_back(surface);
+    }
+
+    /// The surface of a plane or polygon: the current one, with the checker that waits for it.
+    int take_flat_surface() {
+        if (!checker_) return current_surface_;
+        Surface surface = scene_.surfaces[static_cast<std::size_t>(current_surface_)];
+        surface.checker = std::exchange(checker_, std::nullopt);
+        scene_.surfaces.push_back(surface);
+        return static_cast<int>(scene_.surfaces.size()) - 1;
+    }
+
+    void read_sphere() {
+        Sphere sphere{read_vector("the centre"), 0, current_surface_};
+        sphere.radius = tokens_.take_number("the radius");
+        if (std::abs(sphere.radius) < kSmallestLength) refuse("the radius of the sphere is zero");
+        scene_.spheres.push_back(sphere);
+    }
+
+    void read_flat_polygon() { read_polygon(false); }
+    void read_patch() { read_polygon(true); }
+
+    void read_polygon(bool patch) {
+        Polygon polygon;
+        const auto count = static_cast<std::size_t>(tokens_.take_integer("the number of vertices", 3, kMostVertices));
+        const std::size_t shortest = patch ? 12 : 6;  // characters: one digit and one blank for each number
+        if (count > tokens_.characters_left() / shortest + 2)
+            refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
+        for (std::size_t i = 0; i < count; ++i) {
+            polygon.vertices.push_back(read_vector("a vertex"));
+            if (!patch) continue;
+            polygon.normals.push_back(unit_vector(read_vector("a normal")));
+            if (polygon.normals.back() == Vec3(0)) refuse("a normal of the patch is zero");
+        }
+        const std::string reason = tidy_outline(polygon);
+        if (!reason.empty()) refuse("the polygon " + reason);
+        polygon.surface = take_flat_surface();
+        scene_.polygons.push_back(std::move(polygon));
+    }
+
+    void read_cone() {
+        Cone cone;
+        cone.base = read_vector("the base");
+        cone.base_radius = tokens_.take_number("the base radius");
+        cone.apex = read_vector("the apex");
+        cone.apex_radius = tokens_.take_number("the apex radius");
+        cone.surface = current_surface_;
+        const auto [lower, upper] = std::minmax(cone.base_radius, cone.apex_radius);
+        if (std::max(-lower, upper) < kSmallestLength) refuse("both radii of the cone are zero");
+        if (lower < 0 && upper > 0) refuse("one radius of the cone is negative, the other positive");
+        if ((cone.apex - cone.base).length() < kSmallestLength) refuse("the height of the cone is zero");
+        scene_.cones.push_back(cone);
+    }
+
+    void read_directive() {
+        const std::string_view word = tokens_.take_word("the word");
+        if (word == "plane") return read_plane();
+        if (word == "checker") return read_checker();
+        refuse("unknown extension " + quoted(word) + "; raya knows '#raya plane' and '#raya checker'");
+    }
+
+    void read_plane() {
+        const Vec3 given = read_vector("the normal");
+        Plane plane{unit_vector(given), tokens_.take_number("the distance"), 0};
+        if (plane.normal == Vec3(0)) refuse("the normal of the plane is zero");
+        if (plane.normal != given) plane.distance /= given.length();
+        if (!(std::abs(plane.distance) <= kLargestNumber))
+            refuse("the plane lies too far from the origin: at most 1e9 with a normal of length 1");
+        plane.surface = take_flat_surface();
+        scene_.planes.push_back(plane);
+    }
+
+    void read_checker() {
+        if (checker_) refuse("a second '#raya checker' before a plane or polygon has used the first");
+        Checker checker{read_colour("the first colour"), read_colour("the second colour"), 0};
+        checker.size = tokens_.take_number("the size");
+        if (checker.size < kSmallestLength) refuse("the size of the checker must be positive");
+        checker_ = checker;
+        checker_line_ = tokens_.entity_line();
+    }
+
+    NffTokens tokens_;
+    Scene scene_;
+    bool has_view_ = false, has_background_ = false;
+    int current_surface_ = 0;
+    std::optional<Checker> checker_;  // waits for a plane or polygon
+    int checker_line_ = 0;
+};
+
+}  // namespace
+
+Scene parse_nff(std::string_view text, const std::string& name) { return NffReader(text, name).read(); }
+
+Scene read_nff(const std::filesystem::path& path) {
+    const auto refuse = [&](std::string_view reason) -> void {
+        throw UserError(fmt::format("{}: cannot read the scene: {}", path.string(), reason));
+    };
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (error) refuse(error.message());
+    if (std::filesystem::is_directory(status)) refuse("it is a folder; name an NFF file in it");
+    if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) refuse("it is not a file");
+
+    std::ifstream file(path, std::ios::binary);
+    if (!file) refuse(std::strerror(errno));
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (file.bad()) refuse(std::strerror(errno));
+    return parse_nff(text, path.string());
+}
+
+}  // namespace raya

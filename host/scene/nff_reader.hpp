@@ -1,0 +1,35 @@
+// Scenes in NFF, the Neutral File Format, as the SPD programs write it (E. Haines, "A Proposal for Standard Graphics
+// Environments", IEEE CG&A 7(11), 1987; SPD 3.9).
+//
+//     v / from x y z / at x y z / up x y z / angle degrees / hither distance / resolution width height
+//     b r g b                               background; black without it
+//     l x y z [r g b]                       light
+//     f r g b Kd Ks Shine T ior             surface of the objects that follow; white with Kd = 1 before the first
+//     s x y z radius                        sphere
+//     p n, then n times x y z               polygon
+//     pp n, then n times x y z nx ny nz     patch: polygon with a normal at each vertex
+//     c x y z radius, x y z radius          cone or cylinder from base to apex, without caps
+//     #raya plane nx ny nz d                infinite plane n.x = d
+//     #raya checker r g b r g b size        checker for the next plane, polygon or patch
+//     # anything else                       comment
+//
+// An entity starts on a new line; its numbers may be spread over lines as one likes, but what follows `#raya` stands on
+// one line. All six parts of `v` must be given, in any order. Where `hither` lies does not matter, so any number will
+// do.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "scene/scene.hpp"
+
+namespace raya {
+
+/// The scene that `text` describes, with shared surfaces (share_surfaces) and normals of length 1. Scene::name is
+/// `name` without folder. Throws UserError "NAME:LINE: reason" for anything that is not NFF or cannot be traced.
+Scene parse_nff(std::string_view text, const std::string& name);
+
+/// Reads a file. Throws UserError as parse_nff() does, and "NAME: reason" where the file cannot be read.
+Scene read_nff(const std::filesystem::path& path);
+
+}  // namespace raya

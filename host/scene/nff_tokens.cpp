@@ -1,0 +1,152 @@
+#include "scene/nff_tokens.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "error.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::string_view kDirective = "#raya";
+
+bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+bool is_binary(char c) { return (static_cast<unsigned char>(c) < ' ' && !is_blank(c)) || c == '\x7f'; }
+
+struct ParsedNumber {
+    double value = 0;
+    std::string_view rest;  // what follows the number
+    std::errc error{};
+};
+
+/// std::from_chars knows no locale; it takes no leading '+', which scanf, and so other readers, do.
+ParsedNumber parsed_number(std::string_view text) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    ParsedNumber number;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number.value);
+    number.rest = text.substr(static_cast<std::size_t>(end - text.data()));
+    number.error = error;
+    return number;
+}
+
+}  // namespace
+
+std::string quoted(std::string_view text) {
+    constexpr std::size_t kShown = 24;
+    std::string shown = "'";
+    for (const char c : text.substr(0, kShown)) shown += c >= ' ' && c <= '~' ? c : '?';
+    return shown + (text.size() > kShown ? "...'" : "'");
+}
+
+NffTokens::NffTokens(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+    advance();
+}
+
+void NffTokens::refuse(int line, std::string_view reason) const {
+    throw UserError(fmt::format("{}:{}: {}", name_, line, reason));
+}
+
+bool NffTokens::directive_here() const {
+    const std::string_view rest = text_.substr(position_);
+    if (!rest.starts_with(kDirective)) return false;
+    return rest.size() == kDirective.size() || is_blank(rest[kDirective.size()]);
+}
+
+void NffTokens::skip_blanks_and_comments() {
+    bool comment = false;
+    for (; position_ < text_.size(); ++position_) {
+        const char c = text_[position_];
+        if (is_binary(c)) refuse(line_, "a control character: is this a binary file? NFF is plain text");
+        if (c == '\n' || c == '\r') {
+            const bool first_of_two = c == '\r' && text_.substr(position_ + 1).starts_with('\n');
+            line_ += first_of_two ? 0 : 1;
+            at_line_start_ = true;
+            comment = false;
+        } else if (c == '#' && !comment) {
+            if (directive_here()) {
+                if (at_line_start_) return;
+                refuse(line_, "'#raya' must be the first word of its line");
+            }
+            comment = true;
+        } else if (!comment && !is_blank(c)) {
+            return;
+        }
+    }
+}
+
+void NffTokens::advance() {
+    skip_blanks_and_comments();
+    const std::size_t start = position_;
+    while (position_ < text_.size() && !is_blank(text_[position_])) {
+        if (text_[position_] == '#' && position_ > start) break;
+        if (is_binary(text_[position_])) refuse(line_, "a control character: is this a binary file? NFF is plain text");
+        ++position_;
+    }
+    next_ = {text_.substr(start, position_ - start), line_, at_line_start_};
+    at_line_start_ = false;
+}
+
+std::string_view NffTokens::take_keyword() {
+    const NffToken keyword = next_;
+    if (!keyword.first_on_line)
+        refuse(keyword.line, fmt::format("{} follows the end of {}; a new entity starts on a new line",
+                                         quoted(keyword.text), quoted(entity_)));
+    entity_ = keyword.text;
+    entity_line_ = keyword.line;
+    one_line_ = keyword.text == kDirective;
+    advance();
+    return keyword.text;
+}
+
+NffToken NffTokens::take_part(std::string_view what) {
+    const NffToken token = next_;
+    if (token.text.empty()) refuse(token.line, fmt::format("the file ends before {} of {}", what, quoted(entity_)));
+    if (one_line_ && token.line != entity_line_)
+        refuse(entity_line_, fmt::format("the line ends before {} of {}", what, quoted(entity_)));
+    advance();
+    return token;
+}
+
+std::string_view NffTokens::take_word(std::string_view what) {
+    const NffToken token = take_part(what);
+    if (one_line_) entity_ += fmt::format(" {}", token.text);
+    return token.text;
+}
+
+bool NffTokens::number_follows() const { return parsed_number(next_.text).error != std::errc::invalid_argument; }
+
+double NffTokens::take_number(std::string_view what) {
+    const bool cut_short = !number_follows() && next_.first_on_line && !one_line_;
+    const NffToken token = take_part(what);
+    const auto refused = [&](std::string_view reason) {
+        refuse(token.line, fmt::format("{} of {}: {} {}", what, quoted(entity_), quoted(token.text), reason));
+    };
+    if (cut_short)
+        refuse(token.line, fmt::format("{} of line {} is cut short: {} stands where {} should be", quoted(entity_),
+                                       entity_line_, quoted(token.text), what));
+    const ParsedNumber number = parsed_number(token.text);
+    if (number.error == std::errc::invalid_argument) refused("is not a number");
+    if (number.error == std::errc::result_out_of_range) refused("is outside the range of double precision");
+    if (!number.rest.empty()) refused("is a number with something after it");
+    if (!std::isfinite(number.value)) refused("is not a finite number");
+    if (std::abs(number.value) > kLargestNumber) refused("is too large to trace in fp32: at most 1e9; scale the scene");
+    return number.value;
+}
+
+int NffTokens::take_integer(std::string_view what, int lowest, int highest) {
+    const int line = next_.line;
+    const double value = take_number(what);
+    if (value != std::floor(value) || value < lowest || value > highest)
+        refuse(line, fmt::format("{} of {} is {}: must be a whole number from {} to {}", what, quoted(entity_), value,
+                                 lowest, highest));
+    return static_cast<int>(value);
+}
+
+}  // namespace raya

@@ -1,0 +1,70 @@
+#include "scene/outline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "scene/polygon_plane.hpp"
+
+namespace raya {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+void drop_repeats(Polygon& polygon) {
+    const Polygon given = std::exchange(polygon, {{}, {}, polygon.surface});
+    const std::size_t count = given.vertices.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (given.vertices[i] == given.vertices[(i + count - 1) % count]) continue;
+        polygon.vertices.push_back(given.vertices[i]);
+        if (!given.normals.empty()) polygon.normals.push_back(given.normals[i]);
+    }
+}
+
+}  // namespace
+
+Vec3 unit_vector(const Vec3& v) {
+    if (std::abs(v.length2() - 1) <= 8 * kEpsilon) return v;
+    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    if (largest == 0) return v;
+    const Vec3 scaled = v / largest;
+    return scaled / scaled.length();
+}
+
+std::string tidy_outline(Polygon& polygon) {
+    drop_repeats(polygon);
+    const std::vector<Vec3>& vertices = polygon.vertices;
+    if (vertices.size() < 3) return "has fewer than three different vertices";
+
+    double size = 0, reach = 0;
+    Vec3 mean(0);
+    for (const Vec3& v : vertices) {
+        for (int axis = 0; axis < 3; ++axis) {
+            size = std::max(size, std::abs(v[axis] - vertices[0][axis]));
+            reach = std::max(reach, std::abs(v[axis]));
+        }
+        mean += (v - vertices[0]) / static_cast<double>(vertices.size());
+    }
+    if (size < kSmallestLength) return fmt::format("is smaller than {}; scale the scene", kSmallestLength);
+
+    // What rounding alone can make of vertices that lie on one line.
+    const double no_area = 1e-12 * size * size + 8 * kEpsilon * reach * size;
+    const Vec3 normal = newell_normal(vertices);
+    if (normal.length() <= no_area) return "has no area";
+
+    double off = 0;
+    for (const Vec3& v : vertices)
+        off = std::max(off, std::abs((v - vertices[0] - mean).dot(normal) / normal.length()));
+    if (off > kFlatness * size)
+        return fmt::format(
+            "is not flat: a vertex lies {:.3g} off its plane, at most {:.3g} ({} of its size) is "
+            "allowed; cut it into triangles",
+            off, kFlatness * size, kFlatness);
+    return {};
+}
+
+}  // namespace raya

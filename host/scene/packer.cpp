@@ -1,0 +1,203 @@
+#include "scene/packer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "error.hpp"
+#include "scene/polygon_plane.hpp"
+#include "scene/triangulate.hpp"
+
+namespace raya {
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+std::uint32_t word_of(double value) { return std::bit_cast<std::uint32_t>(static_cast<float>(value)); }
+void put(Words& words, double value) { words.push_back(word_of(value)); }
+void put(Words& words, const Vec3& v) {
+    for (int axis = 0; axis < 3; ++axis) put(words, v[axis]);
+}
+void put_index(Words& words, std::size_t value) { words.push_back(static_cast<std::uint32_t>(value)); }
+
+void store(float (&to)[3], const Vec3& from) {
+    for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<float>(from[axis]);
+}
+
+// The primary rays as a corner and two steps (kernels/README.md, Camera).
+void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
+    const bool corners = settings.sampling == Sampling::kCorners;
+    const auto samples = [&](std::uint32_t pixels) { return corners ? std::max(1.0, pixels - 1.0) : double(pixels); };
+    const auto first = [&](std::uint32_t pixels) { return corners ? (pixels == 1 ? 0.5 : 0.0) : 0.5; };
+    const double columns = samples(settings.mapping.width), rows = samples(settings.mapping.height);
+    const Vec3 gaze = (view.at - view.from).normalized();
+    const Vec3 right = gaze.cross(view.up).normalized(), top = right.cross(gaze);
+    const double half_height = std::tan(view.angle_degrees * std::numbers::pi / 360);
+    const double step = 2 * half_height / rows;  // pixels are square
+    store(job.eye, view.from);
+    store(job.column_step, step * right);
+    store(job.row_step, -step * top);
+    store(job.corner, gaze + (first(settings.mapping.width) - columns / 2) * step * right -
+                          (first(settings.mapping.height) - rows / 2) * step * top);
+}
+
+void pack_surface(Words& words, const Surface& s) {
+    const Checker checker = s.checker.value_or(Checker{s.colour, s.colour, 0});
+    put(words, checker.even);
+    for (const double value : {s.diffuse, s.specular, s.shine, s.transmittance, s.refraction}) put(words, value);
+    put(words, checker.odd);
+    put(words, checker.size);
+}
+
+// A flat polygon of its own in the packed scene: a whole polygon, or one triangle of a patch.
+struct Face {
+    const Polygon* polygon;
+    std::vector<int> corners;  // indices of vertices
+};
+
+std::vector<Face> faces_of(const Scene& scene) {
+    std::vector<Face> faces;
+    for (const Polygon& p : scene.polygons) {
+        if (p.normals.empty() || p.vertices.size() == 3) {
+            Face whole{&p, {}};
+            for (int i = 0; i < static_cast<int>(p.vertices.size()); ++i) whole.corners.push_back(i);
+            faces.push_back(std::move(whole));
+        } else {
+            for (const auto& t : triangulate(p.vertices, newell_normal(p.vertices))) faces.push_back({&p, {t[0], t[1], t[2]}});
+        }
+    }
+    return faces;
+}
+
+struct Point2 {
+    double u, v;
+};
+
+Point2 outline_point(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+
+void pack_edges(Words& words, const Face& face, int axis) {
+    for (std::size_t i = 0; i < face.corners.size(); ++i) {
+        Point2 low = outline_point(face.polygon->vertices[face.corners[i]], axis);
+        Point2 high = outline_point(face.polygon->vertices[face.corners[(i + 1) % face.corners.size()]], axis);
+        if (low.v > high.v) std::swap(low, high);  // neighbours that share an edge then compute the same border
+        const double slope = high.v > low.v ? (high.u - low.u) / (high.v - low.v) : 0;
+        for (const double value : {low.u, low.v, high.v, slope}) put(words, value);
+    }
+}
+
+// The shading normal as a linear function of the outline's coordinates.
+void pack_patch(Words& words, const Face& face, int axis) {
+    const auto corner = [&](int i) { return outline_point(face.polygon->vertices[face.corners[i]], axis); };
+    const auto normal = [&](int i) { return face.polygon->normals[face.corners[i]]; };
+    const Point2 a = corner(0);
+    const Point2 b{corner(1).u - a.u, corner(1).v - a.v}, c{corner(2).u - a.u, corner(2).v - a.v};
+    const Vec3 nb = normal(1) - normal(0), nc = normal(2) - normal(0);
+    const double area = b.u * c.v - b.v * c.u;
+    put(words, a.u);
+    put(words, a.v);
+    put(words, normal(0));
+    put(words, area != 0 ? (c.v * nb - b.v * nc) / area : Vec3(0));
+    put(words, area != 0 ? (b.u * nc - c.u * nb) / area : Vec3(0));
+}
+
+void pack_faces(Words& words, const std::vector<Face>& faces, const Words& surface_at) {
+    const std::size_t polygons_at = words.size();
+    words.resize(polygons_at + faces.size() * RAYA_POLYGON_WORDS);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const Polygon& polygon = *faces[i].polygon;
+        const Vec3 normal = newell_normal(polygon.vertices).normalized();
+        const int axis = dropped_axis(normal);
+        Words record;
+        put(record, normal);
+        put(record, normal.dot(polygon.vertices[0]));
+        record.push_back(surface_at[polygon.surface]);
+        put_index(record, axis);
+        put_index(record, faces[i].corners.size());
+        put_index(record, words.size());
+        pack_edges(words, faces[i], axis);
+        put_index(record, polygon.normals.empty() ? 0 : words.size());
+        if (!polygon.normals.empty()) pack_patch(words, faces[i], axis);
+        std::copy(record.begin(), record.end(), words.begin() + static_cast<std::ptrdiff_t>(polygons_at + i * RAYA_POLYGON_WORDS));
+    }
+}
+
+void pack_cone(Words& words, const Cone& c, const Words& surface_at) {
+    const Vec3 along = c.apex - c.base;
+    const double height = along.length(), r0 = std::abs(c.base_radius), r1 = std::abs(c.apex_radius);
+    put(words, c.base);
+    put(words, r0);
+    words.push_back(surface_at[c.surface]);
+    put(words, along / height);
+    put(words, height);
+    put(words, (r1 - r0) / height);
+    put_index(words, c.base_radius < 0 || c.apex_radius < 0 ? 1 : 0);
+}
+
+// The largest job that 32-bit word numbers reach with room to spare: 4 GB.
+constexpr std::size_t kMostWords = std::size_t{1} << 30;
+
+}  // namespace
+
+double self_intersection_margin(const Scene& scene) { return scene_extent(scene) * 0x1p-18; }
+
+PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
+    raya_job job{};
+    job.mapping = settings.mapping;
+    job.bounces = settings.bounces;
+    std::copy(settings.cycles.begin(), settings.cycles.end(), job.cycles);
+    pack_camera(job, scene.view, settings);
+    store(job.background, scene.background);
+    job.ambient = static_cast<float>(ambient_intensity(scene));
+    job.margin = static_cast<float>(self_intersection_margin(scene));
+
+    PackedJob packed;
+    Words& words = packed.words;
+    words.resize(sizeof(raya_job) / sizeof(std::uint32_t));
+    Words surface_at;
+    for (const Surface& s : scene.surfaces) {
+        put_index(surface_at, words.size());
+        pack_surface(words, s);
+    }
+    const auto here = [&] { return static_cast<std::uint32_t>(words.size()); };
+    job.lights = static_cast<std::uint32_t>(scene.lights.size());
+    job.lights_at = here();
+    for (const Light& light : scene.lights) {
+        put(words, light.position);
+        put(words, light_colour(scene, light));
+    }
+    job.spheres = static_cast<std::uint32_t>(scene.spheres.size());
+    job.spheres_at = here();
+    for (const Sphere& s : scene.spheres) {
+        put(words, s.centre);
+        put(words, std::copysign(s.radius * s.radius, s.radius));
+        words.push_back(surface_at[s.surface]);
+    }
+    job.planes = static_cast<std::uint32_t>(scene.planes.size());
+    job.planes_at = here();
+    for (const Plane& p : scene.planes) {
+        put(words, p.normal);
+        put(words, p.distance);
+        words.push_back(surface_at[p.surface]);
+    }
+    job.cones = static_cast<std::uint32_t>(scene.cones.size());
+    job.cones_at = here();
+    for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
+    const std::vector<Face> faces = faces_of(scene);
+    job.polygons = static_cast<std::uint32_t>(faces.size());
+    job.polygons_at = here();
+    pack_faces(words, faces, surface_at);
+    if (words.size() > kMostWords)
+        throw UserError(fmt::format("{}: packs to {} words, more than 32-bit word numbers reach", scene.name, words.size()));
+
+    packed.has_polygons = !faces.empty();
+    packed.has_patches = std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });
+    packed.has_cones = !scene.cones.empty();
+    std::memcpy(words.data(), &job, sizeof job);
+    return packed;
+}
+
+}  // namespace raya

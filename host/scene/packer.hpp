@@ -1,0 +1,36 @@
+// Packs a scene, a view and a mapping into the words that the bus broadcasts and every PE holds (kernels/shared/job.h).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "shared/job.h"
+
+namespace raya {
+
+/// Where in a pixel its primary ray goes through (kernels/README.md, Camera).
+enum class Sampling { kCentres, kCorners };
+
+/// What a job needs beside its scene. The image is mapping.width x mapping.height pixels.
+struct JobSettings {
+    raya_mapping mapping{};
+    Sampling sampling = Sampling::kCentres;
+    std::uint32_t bounces = 8;
+    std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
+};
+
+struct PackedJob {
+    std::vector<std::uint32_t> words;
+    bool has_polygons = false, has_patches = false, has_cones = false;
+};
+
+/// Numbers are rounded from double to fp32 once each. Patches of more than three vertices are cut into triangles, each of which counts as
+/// a polygon of its own. Throws UserError for a scene of more than 2^30 words.
+PackedJob pack_job(const Scene& scene, const JobSettings& settings);
+
+/// The distance at which secondary rays start from the surface that they leave: the scene's extent times 2^-18, scene units. That is 64 units in
+/// the last place of the largest coordinate, some ten times the error of a hit point.
+double self_intersection_margin(const Scene& scene);
+
+}  // namespace raya

@@ -1,0 +1,67 @@
+#include "scene/scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace raya {
+namespace {
+
+double largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+double shared_intensity(std::size_t lights) {
+    const auto n = static_cast<double>(lights);
+    return std::sqrt(n) / (2 * n);
+}
+
+using SurfaceKey = std::array<double, 16>;
+
+/// Every number of a surface: equal surfaces have equal keys.
+SurfaceKey surface_key(const Surface& s) {
+    const Checker c = s.checker.value_or(Checker{Colour(0), Colour(0), 0});
+    return {s.colour.x, s.colour.y, s.colour.z, s.diffuse, s.specular, s.shine, s.transmittance, s.refraction,
+            c.even.x,   c.even.y,   c.even.z,   c.odd.x,   c.odd.y,    c.odd.z, c.size,          s.checker ? 1.0 : 0.0};
+}
+
+}  // namespace
+
+void share_surfaces(Scene& scene) {
+    const std::vector<Surface> before = std::exchange(scene.surfaces, {});
+    std::map<SurfaceKey, int> numbers;
+    const auto renumber = [&](auto& objects) {
+        for (auto& object : objects) {
+            const Surface& surface = before.at(static_cast<std::size_t>(object.surface));
+            const auto [entry, added] = numbers.try_emplace(surface_key(surface), static_cast<int>(numbers.size()));
+            if (added) scene.surfaces.push_back(surface);
+            object.surface = entry->second;
+        }
+    };
+    renumber(scene.spheres);
+    renumber(scene.planes);
+    renumber(scene.polygons);
+    renumber(scene.cones);
+}
+
+Colour light_colour(const Scene& scene, const Light& light) {
+    return light.colour ? *light.colour : Colour(shared_intensity(scene.lights.size()));
+}
+
+double ambient_intensity(const Scene& scene) {
+    return scene.lights.empty() ? 1.0 : shared_intensity(scene.lights.size());
+}
+
+double scene_extent(const Scene& scene) {
+    double extent = largest_coordinate(scene.view.from);
+    for (const Sphere& s : scene.spheres) extent = std::max(extent, largest_coordinate(s.centre) + std::abs(s.radius));
+    for (const Polygon& p : scene.polygons)
+        for (const Vec3& v : p.vertices) extent = std::max(extent, largest_coordinate(v));
+    for (const Cone& c : scene.cones) {
+        extent = std::max(extent, largest_coordinate(c.base) + std::abs(c.base_radius));
+        extent = std::max(extent, largest_coordinate(c.apex) + std::abs(c.apex_radius));
+    }
+    return extent;
+}
+
+}  // namespace raya

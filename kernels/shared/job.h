@@ -1,0 +1,82 @@
+// The job: all that the host broadcasts to every PE, as 32-bit words. A header, then the scene in sections of fixed strides:
+//
+//   raya_job | surfaces | lights | spheres | planes | polygons | cones | outlines of polygons | normals of patches
+//
+// Every word holds a float (as its bits) or an unsigned integer. Objects are numbered through spheres, planes, polygons and
+// cones. "at" words are distances from the job's first word.
+#ifndef RAYA_SHARED_JOB_H
+#define RAYA_SHARED_JOB_H
+#include "shared/events.h"
+#include "shared/mapping.h"
+#include "shared/portable.h"
+
+typedef struct {
+    raya_mapping mapping;
+    raya_u32 bounces;  // reflections and refractions after the primary ray
+    raya_u32 spheres, planes, polygons, cones, lights;            // how many of each
+    raya_u32 lights_at, spheres_at, planes_at, polygons_at, cones_at;
+    raya_u32 cycles[RAYA_EVENTS];    // modelled cycles of one event of each kind
+    float eye[3];                    // origin of the primary rays
+    float corner[3];                 // unnormalised direction of the ray of row 0, column 0
+    float column_step[3], row_step[3];  // what one column, one row adds to it
+    float background[3];             // radiance of a miss
+    float ambient;                   // intensity A
+    float margin;                    // distance at which a ray starts from the surface that it leaves, scene units
+} raya_job;
+RAYA_SHARED_SIZE(raya_job, 4 * (5 + 1 + 5 + 5 + 13 + 17));
+
+enum {  // words of a surface
+    RAYA_SURFACE_COLOUR = 0,      // r g b; colour `even` of a checker
+    RAYA_SURFACE_DIFFUSE = 3,     // Kd
+    RAYA_SURFACE_SPECULAR = 4,    // Ks
+    RAYA_SURFACE_SHINE = 5,       // Phong exponent
+    RAYA_SURFACE_TRANSMIT = 6,    // T
+    RAYA_SURFACE_REFRACTION = 7,  // ior
+    RAYA_SURFACE_ODD = 8,         // r g b: colour `odd` of a checker
+    RAYA_SURFACE_CHECKER = 11,    // side of a square, 0 without a checker
+    RAYA_SURFACE_WORDS = 12
+};
+
+enum { RAYA_LIGHT_POSITION = 0, RAYA_LIGHT_COLOUR = 3, RAYA_LIGHT_WORDS = 6 };
+
+// Every object starts alike: three words of place (centre, normal or base), one of size, and where its surface's words start.
+enum { RAYA_OBJECT_PLACE = 0, RAYA_OBJECT_SIZE = 3, RAYA_OBJECT_SURFACE_AT = 4, RAYA_OBJECT_WORDS = 5 };
+
+enum {  // words of a sphere
+    RAYA_SPHERE_CENTRE = RAYA_OBJECT_PLACE,
+    RAYA_SPHERE_SQUARE = RAYA_OBJECT_SIZE,  // r^2, negated where only the inside is visible
+    RAYA_SPHERE_WORDS = RAYA_OBJECT_WORDS
+};
+
+enum {  // words of a plane n.x = d
+    RAYA_PLANE_NORMAL = RAYA_OBJECT_PLACE,   // unit
+    RAYA_PLANE_DISTANCE = RAYA_OBJECT_SIZE,  // d
+    RAYA_PLANE_WORDS = RAYA_OBJECT_WORDS
+};
+
+enum {  // words of a polygon: those of its plane, and
+    RAYA_POLYGON_AXIS = RAYA_OBJECT_WORDS,  // 0..2: the coordinate that its outline drops
+    RAYA_POLYGON_EDGES,                     // how many edges
+    RAYA_POLYGON_EDGES_AT,                  // where they start
+    RAYA_POLYGON_NORMALS_AT,                // where the normals of a patch start, 0 for a polygon
+    RAYA_POLYGON_WORDS
+};
+
+// An edge of an outline in the coordinates (u, v) that follow the dropped one: (1, 2), (2, 0) or (0, 1). LOW and HIGH are
+// its ends' v as they come round the outline, u = U + (v - LOW) SLOPE on it.
+enum { RAYA_EDGE_U = 0, RAYA_EDGE_LOW = 1, RAYA_EDGE_HIGH = 2, RAYA_EDGE_SLOPE = 3, RAYA_EDGE_WORDS = 4 };
+
+// Shading normal of a patch: N0 + (u - u0) NU + (v - v0) NV, unnormalised.
+enum { RAYA_PATCH_ORIGIN = 0, RAYA_PATCH_N0 = 2, RAYA_PATCH_NU = 5, RAYA_PATCH_NV = 8, RAYA_PATCH_WORDS = 11 };
+
+enum {  // words of a cone
+    RAYA_CONE_BASE = RAYA_OBJECT_PLACE,
+    RAYA_CONE_RADIUS = RAYA_OBJECT_SIZE,  // r0 >= 0
+    RAYA_CONE_AXIS = RAYA_OBJECT_WORDS,   // unit
+    RAYA_CONE_HEIGHT = RAYA_CONE_AXIS + 3,
+    RAYA_CONE_SLOPE,   // k
+    RAYA_CONE_INSIDE,  // 1 where only the inside is visible
+    RAYA_CONE_WORDS
+};
+
+#endif

@@ -1,0 +1,191 @@
+// Labelled commands, their range checks and their profile. Needs an OpenCL device: none is a failure.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "error.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+
+const std::string kSource = "kernel void add(global uint* a, const uint b) { a[get_global_id(0)] += b; }";
+
+std::vector<cl_uint> counting(std::size_t count, cl_uint first) {
+    std::vector<cl_uint> words(count);
+    std::iota(words.begin(), words.end(), first);
+    return words;
+}
+
+std::vector<cl_uint> contents(Session& session, const Buffer<cl_uint>& buffer) {
+    std::vector<cl_uint> words(buffer.size());
+    session.read("contents", buffer, words);
+    return words;
+}
+
+}  // namespace
+
+TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
+    Session session(choose_device(""));
+    constexpr std::size_t kPes = 7, kBlock = 13;  // odd sizes: no alignment helps
+    const std::vector<cl_uint> before = counting(kPes * kBlock, 1000);
+    Buffer<cl_uint> from = session.buffer<cl_uint>("from", before.size());
+    Buffer<cl_uint> to = session.buffer<cl_uint>("to", before.size());
+    session.write("load", from, before);
+    for (std::size_t turn = 0; turn < kPes; ++turn) {  // every block to the right-hand neighbour
+        session.copy("rotate", from, 0, to, kBlock, (kPes - 1) * kBlock);
+        session.copy("rotate", from, (kPes - 1) * kBlock, to, 0, kBlock);
+        std::swap(from, to);
+        if (turn == 0) {
+            std::vector<cl_uint> expected = before;
+            std::rotate(expected.begin(), expected.end() - kBlock, expected.end());
+            CHECK(contents(session, from) == expected);
+        }
+    }
+    CHECK(contents(session, from) == before);
+}
+
+TEST_CASE("write and read with an offset touch only their range", "[cl]") {
+    Session session(choose_device(""));
+    Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 6);
+    CHECK(buffer.size() == 6);
+    CHECK(buffer.bytes() == 24);
+    session.fill("clear", buffer, 9);
+    session.write("middle", buffer, std::vector<cl_uint>{1, 2}, 3);
+    CHECK(contents(session, buffer) == std::vector<cl_uint>{9, 9, 9, 1, 2, 9});
+    std::vector<cl_uint> part(3);
+    session.read("part", buffer, part, 2);
+    CHECK(part == std::vector<cl_uint>{9, 1, 2});
+}
+
+TEST_CASE("ranges beyond a buffer are refused and nothing is done", "[cl]") {
+    Session session(choose_device(""));
+    Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 4);
+    std::vector<cl_uint> words(4), more(5);
+    CHECK_THROWS_AS(session.read("r", buffer, more), std::out_of_range);
+    CHECK_THROWS_AS(session.read("r", buffer, words, 1), std::out_of_range);
+    CHECK_THROWS_AS(session.read("r", buffer, words, kMost), std::out_of_range);  // offset + count overflows
+    CHECK_THROWS_AS(session.write("w", buffer, words, 4), std::out_of_range);
+    CHECK_THROWS_AS(session.copy("c", buffer, 0, buffer, 3, 2), std::out_of_range);
+    CHECK_THROWS_AS(session.copy("c", buffer, 1, buffer, 0, kMost), std::out_of_range);
+    CHECK_THROWS_WITH(session.read("gather", buffer, words, 1),
+                      Contains("'gather'") && Contains("'words' of 4") && Contains("4 elements from element 1"));
+    session.read("nothing", buffer, {}, 4);
+    CHECK(session.profile().commands().empty());
+}
+
+TEST_CASE("overlapping copies are refused with label and buffers", "[cl]") {
+    Session session(choose_device(""));
+    Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 8);
+    CHECK_THROWS_WITH(session.copy("slide", buffer, 0, buffer, 1, 4),
+                      Contains("'slide'") && Contains("'words'") && Contains("CL_MEM_COPY_OVERLAP"));
+}
+
+TEST_CASE("buffers that cannot be are refused", "[cl]") {
+    const Session session(choose_device(""));
+    CHECK_THROWS_AS(session.buffer<float>("empty", 0), std::invalid_argument);
+    const std::uint64_t most = session.device().max_allocation_bytes;
+    const std::size_t count = std::size_t(most / sizeof(float)) + 1;
+    CHECK_THROWS_AS(session.buffer<float>("huge", count), DeviceError);
+    CHECK_THROWS_WITH(session.buffer<float>("huge", count), Contains("'huge'") && Contains(std::to_string(most)) &&
+                                                                Contains(std::to_string(count * sizeof(float))));
+    CHECK_THROWS_AS(session.buffer<double>("endless", kMost), DeviceError);  // its size in bytes overflows
+}
+
+TEST_CASE("the profile counts every command in order, with times that grow", "[cl]") {
+    Session session(choose_device(""));
+    auto add = session.build("add", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint>("add");
+    Buffer<cl_uint> a = session.buffer<cl_uint>("a", 64), b = session.buffer<cl_uint>("b", 64);
+    session.write("load", a, counting(64, 0));
+    for (cl_uint i = 0; i < 5; ++i) session.launch("add", add, 8, 8, a, i);
+    session.copy("move", a, 0, b, 0, 64);
+    session.launch("add", add, 4, 16, b, 1U);
+    session.copy("load", a, 0, b, 0, 1);  // a label of two kinds
+    CHECK(contents(session, b)[1] == 1 + 0 + 1 + 2 + 3 + 4 + 1);
+
+    const Profile& profile = session.profile();
+    REQUIRE(profile.timed());
+    std::vector<std::string> order;
+    std::uint64_t last_queued = 0;
+    for (const CommandRecord& command : profile.commands()) {
+        order.push_back(command.label);
+        CAPTURE(order, command.kind);
+        CHECK(command.queued >= last_queued);
+        CHECK(command.queued > 0);
+        CHECK(command.queued <= command.submitted);
+        CHECK(command.submitted <= command.started);
+        CHECK(command.started <= command.ended);
+        last_queued = command.queued;
+    }
+    CHECK(order ==
+          std::vector<std::string>{"load", "add", "add", "add", "add", "add", "move", "add", "load", "contents"});
+    CHECK(profile.commands()[0].bytes == 256);
+    CHECK(profile.commands()[1].bytes == 0);
+    CHECK(profile.commands()[8].bytes == 4);
+
+    std::vector<std::string> lines;
+    for (const LabelSummary& line : profile.summary()) {
+        lines.push_back(line.label + "/" + line.kind + "/" + std::to_string(line.launches));
+    }
+    CHECK(lines ==
+          std::vector<std::string>{"load/write/1", "add/kernel/6", "move/copy/1", "load/copy/1", "contents/read/1"});
+    session.clear_profile();
+    CHECK(session.profile().commands().empty());
+}
+
+TEST_CASE("a summary adds up its commands", "[cl]") {
+    Profile profile(true);
+    profile.add({"a", "kernel", 1, 2, 10, 40, 0});
+    profile.add({"b", "read", 1, 2, 50, 51, 8});
+    profile.add({"a", "kernel", 1, 2, 60, 70, 0});
+    const std::vector<LabelSummary> lines = profile.summary();
+    REQUIRE(lines.size() == 2);
+    CHECK(lines[0].label == "a");
+    CHECK(lines[0].launches == 2);
+    CHECK(lines[0].total_ns == 40);
+    CHECK(lines[0].min_ns == 10);
+    CHECK(lines[0].mean_ns == 20.0);
+    CHECK(lines[0].max_ns == 30);
+    CHECK(lines[1].total_ns == 1);
+    CHECK(lines[1].min_ns == 1);
+}
+
+TEST_CASE("without timing everything else works and times are zero", "[cl]") {
+    Session session(choose_device(""), Timing::kOff);
+    Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 4);
+    session.fill("fill", buffer, 5);
+    CHECK(contents(session, buffer) == std::vector<cl_uint>(4, 5));
+    CHECK_FALSE(session.profile().timed());
+    REQUIRE(session.profile().commands().size() == 2);
+    CHECK(session.profile().commands()[0].ended == 0);
+    CHECK(session.profile().summary()[0].launches == 1);
+    CHECK(session.profile().summary()[0].total_ns == 0);
+}
+
+TEST_CASE("thousands of commands in one go are all recorded", "[cl]") {
+    Session session(choose_device(""));
+    Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 1);
+    for (cl_uint i = 0; i < 5000; ++i) session.fill("fill", buffer, i);
+    CHECK(contents(session, buffer)[0] == 4999);
+    CHECK(session.profile().commands().size() == 5001);
+}
+
+TEST_CASE("a launch that cannot be is refused with label, kernel and error", "[cl]") {
+    Session session(choose_device(""));
+    auto add = session.build("add", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint>("add");
+    Buffer<cl_uint> a = session.buffer<cl_uint>("a", 1);
+    CHECK_THROWS_AS(session.launch("empty", add, 0, 8, a, 1U), std::invalid_argument);
+    CHECK_THROWS_AS(session.launch("empty", add, 8, 0, a, 1U), std::invalid_argument);
+    const std::size_t too_wide = session.device().max_group_size * 2;
+    CHECK_THROWS_WITH(session.launch("wide", add, 1, too_wide, a, 1U),
+                      Contains("'wide'") && Contains("'add'") && Contains("clEnqueueNDRangeKernel") &&
+                          Contains("CL_INVALID_WORK_") && Contains("remedy"));  // ..GROUP_ or ..ITEM_SIZE
+}

@@ -1,0 +1,116 @@
+// Which device is chosen, what it says of itself, and errors in words. Needs an OpenCL device: none is a failure.
+#include <catch2/catch.hpp>
+#include <cctype>
+#include <string>
+#include <vector>
+
+#include "cl/device.hpp"
+#include "cl/error_names.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+DeviceInfo made_up(const std::string& platform, const std::string& name, const std::string& type, bool usable = true) {
+    DeviceInfo info;
+    info.platform = platform;
+    info.name = name;
+    info.type = type;
+    info.available = true;
+    info.compiler_available = usable;
+    return info;
+}
+
+const std::vector<DeviceInfo> kDevices = {
+    made_up("Broken", "Old GPU", "gpu", false),
+    made_up("Portable Computing Language", "pthread-EPYC", "cpu"),
+    made_up("Vendor", "Arc 770", "gpu"),
+    made_up("Vendor", "Arc 380", "gpu"),
+};
+
+std::string refusal(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
+    try {
+        device_index(wanted, devices);
+    } catch (const DeviceError& error) {
+        return error.what();
+    }
+    return "not refused";
+}
+
+}  // namespace
+
+TEST_CASE("there is an OpenCL device and it describes itself", "[cl]") {
+    const std::vector<cl::Device> devices = all_devices();
+    REQUIRE_FALSE(devices.empty());
+    for (const cl::Device& device : devices) {
+        const DeviceInfo info = device_info(device);
+        CAPTURE(info.platform, info.name);
+        CHECK_FALSE(info.name.empty());
+        CHECK_FALSE(info.platform.empty());
+        CHECK_THAT(info.version, Contains("OpenCL"));
+        CHECK((info.type == "cpu" || info.type == "gpu" || info.type == "other"));
+        CHECK(info.compute_units >= 1);
+        CHECK(info.max_group_size >= 1);
+        CHECK(info.native_float_width >= 1);
+        CHECK(info.preferred_float_width >= 1);
+        CHECK(info.max_allocation_bytes <= info.global_memory_bytes);
+        // What OpenCL 1.2 promises of every device of the full profile.
+        CHECK(info.local_memory_bytes >= 32 * 1024);
+        CHECK(info.max_allocation_bytes >= 128 * 1024 * 1024);
+        CHECK(info.profiling);
+        CHECK(info.inf_nan);
+    }
+}
+
+TEST_CASE("a real device is found by number and by any part of its name in any case", "[cl]") {
+    const std::vector<cl::Device> devices = all_devices();
+    REQUIRE_FALSE(devices.empty());
+    CHECK(choose_device("0")() == devices[0]());
+    std::string part = device_info(devices[0]).name.substr(1);
+    for (char& letter : part) letter = char(std::toupper(static_cast<unsigned char>(letter)));
+    CHECK(device_info(choose_device(part)).name == device_info(devices[0]).name);
+}
+
+TEST_CASE("a device is chosen by name over all platforms", "[cl]") {
+    CHECK(device_index("", kDevices) == 2);  // the first GPU that can be used, not the first device
+    CHECK(device_index("", {kDevices[0], kDevices[1]}) == 1);
+    CHECK(device_index("", {made_up("Vendor", "FPGA", "other")}) == 0);
+    CHECK(device_index("arc", kDevices) == 2);
+    CHECK(device_index("ARC 3", kDevices) == 3);
+    CHECK(device_index("language PTHREAD", kDevices) == 1);
+    CHECK(device_index("3", kDevices) == 3);
+    CHECK(device_index("380", kDevices) == 3);  // no such number, so a part of a name
+}
+
+TEST_CASE("a device that does not exist is refused with the list of those that do", "[cl]") {
+    const std::string text = refusal("Radeon", kDevices);
+    CHECK_THAT(text, Contains("'Radeon'") && Contains("remedy"));
+    CHECK_THAT(text, Contains("0: Broken Old GPU (gpu, not usable)") && Contains("3: Vendor Arc 380 (gpu)"));
+    CHECK_THAT(refusal("old", kDevices), Contains("without a compiler") && Contains("2: Vendor Arc 770"));
+    CHECK_THAT(refusal("", {kDevices[0]}), Contains("no OpenCL device is available") && Contains("Old GPU"));
+    CHECK_THAT(refusal("", {}), Contains("pocl-opencl-icd") && Contains("OCL_ICD_VENDORS") && Contains("clinfo"));
+
+    REQUIRE_FALSE(all_devices().empty());
+    const std::string real_name = device_info(all_devices()[0]).name;
+    CHECK_THROWS_WITH(choose_device("no such device"), Contains("no such device") && Contains(real_name));
+    CHECK_THROWS_AS(choose_device("no such device"), DeviceError);
+}
+
+TEST_CASE("errors have names and remedies", "[cl]") {
+    CHECK(error_name(CL_SUCCESS) == "CL_SUCCESS");
+    CHECK(error_name(CL_INVALID_KERNEL_ARGS) == "CL_INVALID_KERNEL_ARGS");
+    CHECK(error_name(CL_BUILD_PROGRAM_FAILURE) == "CL_BUILD_PROGRAM_FAILURE");
+    CHECK(error_name(-1001) == "CL_PLATFORM_NOT_FOUND_KHR");
+    CHECK(error_name(-72) == "CL_MAX_SIZE_RESTRICTION_EXCEEDED");
+    CHECK_THAT(error_name(-4711), Contains("-4711"));
+    CHECK_THAT(error_remedy(CL_DEVICE_NOT_FOUND), Contains("pocl-opencl-icd"));
+    CHECK(error_remedy(CL_INVALID_EVENT).empty());
+
+    const auto fail = [] { throw cl::Error(CL_INVALID_WORK_GROUP_SIZE, "clEnqueueNDRangeKernel"); };
+    CHECK_THROWS_WITH(guarded("'trace': launching", fail),
+                      Contains("'trace': launching") && Contains("clEnqueueNDRangeKernel") &&
+                          Contains("CL_INVALID_WORK_GROUP_SIZE (-54)") && Contains("remedy: use a work-group size"));
+    CHECK_THROWS_AS(guarded("", fail), DeviceError);
+    CHECK(guarded("", [] { return 7; }) == 7);
+}

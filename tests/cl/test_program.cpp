@@ -1,0 +1,100 @@
+// Programs and typed kernels. Needs an OpenCL device: none is a failure.
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "error.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+const std::string kSource = R"(
+kernel void scale(global const float* restrict from, const float factor, global float* restrict to) {
+    to[get_global_id(0)] = factor * from[get_global_id(0)] + RAYA_SHIFT;
+}
+kernel void reverse_group(global int* words, local int* scratch) {
+    const size_t i = get_local_id(0), n = get_local_size(0);
+    scratch[i] = words[get_global_id(0)];
+    barrier(CLK_LOCAL_MEM_FENCE);
+    words[get_global_id(0)] = scratch[n - 1 - i];
+}
+)";
+
+Program build_test_program(const Session& session) { return session.build("test", kSource, {"-DRAYA_SHIFT=0.5f"}); }
+
+}  // namespace
+
+TEST_CASE("a kernel with buffers and a value computes the right numbers", "[cl]") {
+    Session session(choose_device(""));
+    const Program program = build_test_program(session);
+    auto scale = program.kernel<const Buffer<float>&, cl_float, Buffer<float>&>("scale");
+    std::vector<float> numbers(96);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = float(i) - 40.0F;
+    Buffer<float> from = session.buffer<float>("from", numbers.size());
+    Buffer<float> to = session.buffer<float>("to", numbers.size());
+    session.write("numbers", from, numbers);
+    session.launch("scale", scale, 12, 8, from, 3.0F, to);
+    std::vector<float> result(numbers.size());
+    session.read("result", to, result);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        CAPTURE(i);
+        CHECK(result[i] == 3.0F * numbers[i] + 0.5F);  // exact: small multiples of one half
+    }
+    CHECK(program.build_seconds() > 0);
+    CHECK(program.options() == "-DRAYA_SHIFT=0.5f");
+    CHECK(program.name() == "test");
+}
+
+TEST_CASE("a kernel gets local memory counted in elements", "[cl]") {
+    Session session(choose_device(""));
+    auto reverse = build_test_program(session).kernel<Buffer<cl_int>&, LocalMemory<cl_int>>("reverse_group");
+    Buffer<cl_int> words = session.buffer<cl_int>("words", 8);
+    session.write("words", words, std::vector<cl_int>{1, 2, 3, 4, 5, 6, 7, 8});
+    session.launch("reverse", reverse, 2, 4, words, LocalMemory<cl_int>{4});
+    std::vector<cl_int> result(8);
+    session.read("words", words, result);
+    CHECK(result == std::vector<cl_int>{4, 3, 2, 1, 8, 7, 6, 5});
+
+    const std::size_t too_many = session.device().local_memory_bytes / sizeof(cl_int) + 1;
+    CHECK_THROWS_WITH(session.launch("reverse", reverse, 2, 4, words, LocalMemory<cl_int>{too_many}),
+                      Contains("'reverse'") && Contains("reverse_group") &&
+                          Contains(std::to_string(too_many * sizeof(cl_int))) &&
+                          Contains(std::to_string(session.device().local_memory_bytes)));
+}
+
+TEST_CASE("a wrong number of arguments and an unknown kernel are refused by name", "[cl]") {
+    const Session session(choose_device(""));
+    const Program program = build_test_program(session);
+    CHECK_THROWS_WITH((program.kernel<const Buffer<float>&, Buffer<float>&>("scale")),
+                      Contains("'scale'") && Contains("has 3 parameters") && Contains("passes 2"));
+    CHECK_THROWS_AS((program.kernel<cl_int>("scale")), DeviceError);
+    CHECK_THROWS_WITH(program.kernel<cl_int>("scael"),
+                      Contains("'scael'") && Contains("'test'") && Contains("reverse_group"));
+    CHECK_THROWS_AS(program.kernel<cl_int>("scael"), DeviceError);
+}
+
+TEST_CASE("an argument of the wrong size is refused with kernel and number", "[cl]") {
+    Session session(choose_device(""));
+    auto wrong = build_test_program(session).kernel<const Buffer<float>&, cl_double2, Buffer<float>&>("scale");
+    Buffer<float> data = session.buffer<float>("data", 8);
+    CHECK_THROWS_WITH(session.launch("scale", wrong, 1, 8, data, cl_double2{}, data),
+                      Contains("argument 1") && Contains("'scale'") && Contains("CL_INVALID_ARG_SIZE"));
+}
+
+TEST_CASE("a failed build shows log, options, device and program", "[cl]") {
+    const Session session(choose_device(""));
+    std::string text;
+    try {
+        session.build("broken", "kernel void f(global int* a) { a[0] = undeclared_name; }",
+                      {"-DRAYA_A=1", "-DRAYA_B=2"});
+    } catch (const DeviceError& error) {
+        text = error.what();
+    }
+    CHECK_THAT(text, Contains("'broken'") && Contains("clBuildProgram") && Contains("CL_BUILD_PROGRAM_FAILURE"));
+    CHECK_THAT(text, Contains("undeclared_name"));  // only the log has it
+    CHECK_THAT(text, Contains("-DRAYA_A=1 -DRAYA_B=2"));
+    CHECK_THAT(text, Contains(session.device().platform) && Contains(session.device().name));
+}

@@ -1,0 +1,217 @@
+// Picture files: what is in them byte by byte where that matters, and that they come back as they went in.
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "error.hpp"
+#include "image/image_io.hpp"
+#include "image/srgb.hpp"
+#include "report/scratch_folder.hpp"
+
+namespace raya {
+namespace {
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+const ImageAttributes kAttributes{{"scene", "centre.nff"}, {"mapping", "cyclic"}, {"offset", "16"}, {"format", "fp32"}};
+
+std::string contents(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Every value differs, none is symmetric; unclamped, with the awkward ones among them.
+Image awkward_image() {
+    Image image{5, 3, {}};
+    for (int i = 0; i < 45; ++i) image.rgb.push_back(static_cast<float>(i - 5) * 0.37f);
+    image.rgb[7] = -0.0f;
+    image.rgb[8] = std::numeric_limits<float>::infinity();
+    image.rgb[9] = std::numeric_limits<float>::denorm_min();
+    return image;
+}
+
+TEST_CASE("EXR and PFM give back every bit", "[image_io]") {
+    const ScratchFolder folder;
+    const Image image = awkward_image();
+    for (const char* name : {"a.exr", "a.pfm", "A.EXR"}) {
+        CAPTURE(name);
+        write_image(folder / name, image, kAttributes);
+        const Image back = read_image(folder / name);
+        CHECK(back.width == 5);
+        CHECK(back.height == 3);
+        CHECK(pixel_hash(back) == pixel_hash(image));
+    }
+}
+
+TEST_CASE("grey images come back too, EXR in a channel Y of floats", "[image_io]") {
+    const ScratchFolder folder;
+    const GreyImage image{3, 2, {0, 1.5f, 1e9f, 16777217.0f, -4, 0.1f}};
+    for (const char* name : {"cost.exr", "cost.pfm"}) {
+        CAPTURE(name);
+        write_image(folder / name, image, kAttributes);
+        const GreyImage back = read_grey_image(folder / name);
+        CHECK(back.width == 3);
+        CHECK(back.height == 2);
+        CHECK(back.values == image.values);
+        CHECK_THROWS_WITH(read_image(folder / name), Contains(name) && Contains("1 channels, not 3"));
+    }
+    const auto file = OIIO::ImageInput::open((folder / "cost.exr").string());
+    REQUIRE(file);
+    CHECK(file->spec().channelnames == std::vector<std::string>{"Y"});
+    CHECK(file->spec().format == OIIO::TypeDesc::FLOAT);
+}
+
+TEST_CASE("PFM stores little-endian floats, the bottom row first", "[image_io]") {
+    const ScratchFolder folder;
+    write_image(folder / "grey.pfm", GreyImage{1, 2, {1.0f, -2.0f}}, {});  // 1 above -2
+    CHECK(contents(folder / "grey.pfm") == std::string("Pf\n1 2\n-1.0\n\x00\x00\x00\xc0\x00\x00\x80\x3f", 20));
+    write_image(folder / "rgb.pfm", Image{2, 1, {1, 0, 0, 0, 0, 1}}, {});
+    CHECK(contents(folder / "rgb.pfm").substr(0, 16) == std::string("PF\n2 1\n-1.0\n\x00\x00\x80\x3f", 16));
+    CHECK(contents(folder / "rgb.pfm").size() == 12 + 24);
+}
+
+TEST_CASE("row 0 is the top row of PNG and EXR", "[image_io]") {
+    const ScratchFolder folder;
+    for (const char* name : {"a.png", "a.exr"}) {
+        CAPTURE(name);
+        write_image(folder / name, Image{1, 2, {1, 1, 1, 0, 0, 0}}, {});
+        const auto file = OIIO::ImageInput::open((folder / name).string());
+        REQUIRE(file);
+        std::vector<float> row(3);
+        REQUIRE(file->read_scanline(0, 0, OIIO::TypeDesc::FLOAT, row.data()));
+        CHECK(row == std::vector<float>{1, 1, 1});
+    }
+}
+
+/// The sRGB curve as IEC 61966-2-1 writes it, in the direction that the program does not use.
+double srgb_curve(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+TEST_CASE("srgb_code rounds the curve to the nearest code", "[image_io]") {
+    for (int i = 0; i <= 100'000; ++i) {
+        const float linear = static_cast<float>(i) / 100'000;
+        const double exact = 255 * srgb_curve(linear);
+        CAPTURE(linear, exact);
+        // Half a code, and what the standard's own constants leave open where its two branches meet (under 1e-5 codes).
+        REQUIRE(std::abs(srgb_code(linear) - exact) <= 0.5 + 1e-5);
+    }
+}
+
+TEST_CASE("srgb_code clamps", "[image_io]") {
+    CHECK(srgb_code(-3.0f) == 0);
+    CHECK(srgb_code(0.0f) == 0);
+    CHECK(srgb_code(1.0f) == 255);
+    CHECK(srgb_code(17.0f) == 255);
+    CHECK(srgb_code(std::numeric_limits<float>::infinity()) == 255);
+    CHECK(srgb_code(std::numeric_limits<float>::quiet_NaN()) == 0);
+}
+
+TEST_CASE("no float lies so near to a border between codes that pow could round it the other way", "[image_io]") {
+    for (int code = 0; code < 255; ++code) {
+        const double encoded = (code + 0.5) / 255;
+        const double border = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+        CAPTURE(code, border);
+        CHECK(std::abs(static_cast<float>(border) - border) > 1e-11 * border);
+    }
+}
+
+TEST_CASE("PNG holds all 256 codes and gives them back", "[image_io]") {
+    const ScratchFolder folder;
+    Image image{256, 1, {}};
+    for (int code = 0; code < 256; ++code)
+        image.rgb.insert(image.rgb.end(), 3, linear_from_srgb_code(static_cast<std::uint8_t>(code)));
+    write_image(folder / "codes.png", image, {});
+    CHECK(read_image(folder / "codes.png").rgb == image.rgb);
+    const auto file = OIIO::ImageInput::open((folder / "codes.png").string());
+    REQUIRE(file);
+    CHECK(file->spec().format == OIIO::TypeDesc::UINT8);
+    std::vector<std::uint8_t> codes(768);
+    REQUIRE(file->read_image(0, 0, 0, -1, OIIO::TypeDesc::UINT8, codes.data()));
+    for (std::size_t i = 0; i < codes.size(); ++i) REQUIRE(codes[i] == i / 3);
+}
+
+TEST_CASE("attributes stand in PNG and EXR under raya:", "[image_io]") {
+    const ScratchFolder folder;
+    for (const char* name : {"a.png", "a.exr"}) {
+        CAPTURE(name);
+        write_image(folder / name, awkward_image(), kAttributes);
+        const auto file = OIIO::ImageInput::open((folder / name).string());
+        REQUIRE(file);
+        for (const auto& [key, text] : kAttributes) CHECK(file->spec().get_string_attribute("raya:" + key) == text);
+    }
+}
+
+TEST_CASE("files say nothing about when, where and by which version they were made", "[image_io]") {
+    const ScratchFolder folder;
+    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
+        CAPTURE(name);
+        write_image(folder / name, awkward_image(), kAttributes);
+        const std::string first = contents(folder / name);
+        write_image(folder / name, awkward_image(), kAttributes);
+        CHECK(contents(folder / name) == first);
+        for (const char* word : {"capDate", "tIME", "DateTime", "Software", "HostComputer", "OpenImageIO"})
+            CHECK_THAT(first, !Contains(word));
+    }
+}
+
+TEST_CASE("an unknown extension is refused with those that are known", "[image_io]") {
+    const ScratchFolder folder;
+    const auto message = Contains("use one of .png, .exr, .pfm");
+    for (const char* name : {"a.jpg", "a", ".png", "a.png.gz"}) {
+        CAPTURE(name);
+        CHECK_THROWS_WITH(write_image(folder / name, awkward_image(), {}), Contains(name) && message);
+        CHECK_THROWS_WITH(check_writable_target(folder / name, kImageExtensions), Contains(name) && message);
+        CHECK_THROWS_AS(check_writable_target(folder / name, kImageExtensions), UserError);
+    }
+    CHECK_THROWS_WITH(write_image(folder / "cost.png", GreyImage{1, 1, {1}}, {}), Contains("use one of .exr, .pfm"));
+    CHECK(folder.entries() == 0);
+}
+
+TEST_CASE("a bad target is refused before and at writing, and nothing is left", "[image_io]") {
+    const ScratchFolder folder;
+    fs::create_symlink("/dev/full", folder / "full.png");
+    check_writable_target(folder / "new.png", kImageExtensions);
+    CHECK_THROWS_AS(check_writable_target(folder / "missing/a.png", kImageExtensions), UserError);
+    CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", awkward_image(), {}), Contains("does not exist"));
+    CHECK_THROWS_WITH(write_image(folder / "full.png", awkward_image(), {}), Contains("No space left on device"));
+    Image wide{1'000'001, 1, {}};  // libpng's limit is a million
+    wide.rgb.resize(3'000'003);
+    CHECK_THROWS_WITH(write_image(folder / "wide.png", wide, {}), Contains("wide.png") && Contains(".pfm"));
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("a picture without all its pixels is a mistake of the program", "[image_io]") {
+    const ScratchFolder folder;
+    CHECK_THROWS_AS(write_image(folder / "a.exr", Image{2, 2, std::vector<float>(11)}, {}), std::logic_error);
+    CHECK_THROWS_AS(write_image(folder / "a.exr", GreyImage{0, 2, {}}, {}), std::logic_error);
+    CHECK(folder.entries() == 0);
+}
+
+TEST_CASE("files that are no pictures are refused on reading", "[image_io]") {
+    const ScratchFolder folder;
+    CHECK_THROWS_WITH(read_image(folder / "none.exr"), Contains("none.exr"));
+    CHECK_THROWS_WITH(read_image(folder / "none.pfm"), Contains("none.pfm"));
+    for (const char* bytes :
+         {"", "PF", "PF\n2 2\n1.0\n0000", "PF\n0 1\n-1.0\n", "PF\n-2 1\n-1.0\n", "PF\n2 2\n-1.0\n0000",
+          "PF\n999999999 999999999\n-1.0\n0000", "XY\n1 1\n-1.0\n000000000000"}) {
+        CAPTURE(bytes);
+        for (const char* name : {"bad.pfm", "bad.png", "bad.exr"}) {
+            std::ofstream(folder / name, std::ios::binary) << bytes;
+            CHECK_THROWS_WITH(read_image(folder / name), Contains("cannot read") && Contains(name));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace raya

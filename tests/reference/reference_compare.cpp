@@ -1,0 +1,62 @@
+// An image against the reference, and where the two may rightly differ.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "reference/reference.hpp"
+
+namespace raya::reference {
+namespace {
+
+/// Largest difference of any channel, clamped to 0..1; infinite where a value is not finite. Adds the squares to
+/// `squares`.
+double channel_difference(const Colour& a, const Colour& b, double& squares) {
+    double largest = 0;
+    for (int i = 0; i < 3; ++i) {
+        const bool finite = std::isfinite(a[i]) && std::isfinite(b[i]);
+        const double off = finite ? std::abs(std::clamp(a[i], 0.0, 1.0) - std::clamp(b[i], 0.0, 1.0)) : kFar;
+        largest = std::max(largest, off);
+        squares += off * off;
+    }
+    return largest;
+}
+
+}  // namespace
+
+bool grazes_edge(const Scene& scene, const Options& options, int x, int y, double reach_pixels) {
+    Counts ignored;
+    History own_history;
+    const Colour own = trace_pixel(scene, options, x, y, ignored, &own_history);
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+            History history;
+            const Colour colour =
+                trace_pixel(scene, options, x + dx * reach_pixels, y + dy * reach_pixels, ignored, &history);
+            double squares = 0;
+            if (history != own_history || channel_difference(colour, own, squares) > 1.0 / 255) return true;
+        }
+    return false;
+}
+
+Difference compare(const Image& reference, const std::vector<float>& rgb, const Scene& scene, const Options& options,
+                   double limit, double reach_pixels) {
+    if (options.width != reference.width || options.height != reference.height ||
+        rgb.size() != 3 * reference.pixels.size())
+        throw std::invalid_argument("reference::compare: the image, the reference and the options differ in size");
+    Difference difference;
+    double squares = 0;
+    for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
+        const Colour colour(rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]);
+        const double off = channel_difference(reference.pixels[i], colour, squares);
+        difference.largest = std::max(difference.largest, off);
+        if (off <= limit) continue;
+        ++difference.over;
+        const int pixel = static_cast<int>(i);
+        if (grazes_edge(scene, options, pixel % options.width, pixel / options.width, reach_pixels))
+            ++difference.excused;
+    }
+    difference.psnr_db = -10 * std::log10(squares / static_cast<double>(rgb.size()));
+    return difference;
+}
+
+}  // namespace raya::reference

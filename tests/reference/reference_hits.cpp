@@ -1,0 +1,203 @@
+// Rays against the four kinds of objects: kernels/README.md, Hits and Checker.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "reference/reference.hpp"
+#include "scene/polygon_plane.hpp"
+#include "scene/triangulate.hpp"
+
+namespace raya::reference {
+namespace {
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// The two coordinates that remain when the largest component of the normal is dropped.
+Imath::V2d flattened(const Vec3& point, const Vec3& normal) {
+    const int axis = dropped_axis(normal);
+    return {point[axis == 0 ? 1 : 0], point[axis == 2 ? 1 : 2]};
+}
+
+/// Crossing number: odd where a line from the point towards larger u crosses the outline. Of an edge's two ends only
+/// the lower one in v belongs to it, so that a vertex is counted once.
+bool inside_outline(const std::vector<Vec3>& vertices, const Vec3& normal, const Vec3& point) {
+    const Imath::V2d p = flattened(point, normal);
+    bool inside = false;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Imath::V2d a = flattened(vertices[i], normal);
+        const Imath::V2d b = flattened(vertices[(i + 1) % vertices.size()], normal);
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+    }
+    return inside;
+}
+
+/// The cone in the terms of kernels/README.md; radii are taken as positive.
+struct ConeFrame {
+    Vec3 axis;
+    double height, base_radius, slope;
+
+    explicit ConeFrame(const Cone& cone)
+        : axis((cone.apex - cone.base).normalized()),
+          height((cone.apex - cone.base).length()),
+          base_radius(std::abs(cone.base_radius)),
+          slope((std::abs(cone.apex_radius) - base_radius) / height) {}
+
+    Vec3 outward_normal(const Cone& cone, const Vec3& x) const {
+        const double z = (x - cone.base).dot(axis);
+        return (x - cone.base - z * axis - slope * (base_radius + slope * z) * axis).normalized();
+    }
+};
+
+/// The real roots of a t^2 + 2 b t + c in ascending order, in the form that does not cancel.
+std::vector<double> quadratic_roots(double a, double b, double c) {
+    if (a == 0) return b == 0 ? std::vector<double>{} : std::vector<double>{-c / (2 * b)};
+    const double discriminant = b * b - a * c;
+    if (discriminant < 0) return {};
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+    if (q == 0) return {0};
+    return {std::min(q / a, c / q), std::max(q / a, c / q)};
+}
+
+/// Normal of a patch at a point: linear over the triangle in which the point lies, which is the one whose smallest
+/// barycentric coordinate is the largest; so a point on an edge that rounding puts outside both still has one.
+Vec3 interpolated_normal(const Polygon& patch, const Vec3& normal, const Vec3& point) {
+    double best_inside = -kFar;
+    Vec3 best(0, 0, 0);
+    for (const std::array<int, 3>& triangle : triangulate(patch.vertices, normal)) {
+        std::array<double, 3> share{};
+        for (int i = 0; i < 3; ++i) {
+            const Vec3& next = patch.vertices[index(triangle[index((i + 1) % 3)])];
+            const Vec3& after = patch.vertices[index(triangle[index((i + 2) % 3)])];
+            share[index(i)] = (next - point).cross(after - point).dot(normal);
+        }
+        const double sum = share[0] + share[1] + share[2];
+        if (sum <= 0) continue;  // a flat triangle holds no point
+        const double inside = *std::min_element(share.begin(), share.end()) / sum;
+        if (inside <= best_inside) continue;
+        best_inside = inside;
+        best = Vec3(0, 0, 0);
+        for (int i = 0; i < 3; ++i) best += share[index(i)] / sum * patch.normals[index(triangle[index(i)])];
+    }
+    return best.normalized();
+}
+
+/// A hit of object `number` at distance t with outward normals `geometric` and `shading`: turned, coloured.
+Hit finished(const Scene& scene, const Ray& ray, double t, int number, int surface, const Vec3& geometric,
+             const Vec3& shading) {
+    Hit hit;
+    hit.t = t;
+    hit.object = number;
+    hit.point = ray.origin + t * ray.direction;
+    hit.leaving = geometric.dot(ray.direction) > 0;
+    hit.geometric = hit.leaving ? -geometric : geometric;
+    hit.shading = hit.leaving ? -shading : shading;
+    if (hit.shading.dot(hit.geometric) < 0) hit.shading = -hit.shading;
+    hit.surface = surface;
+    const Surface& look = scene.surfaces[index(surface)];
+    hit.colour = look.colour;
+    if (look.checker) {
+        const Imath::V2d uv = flattened(hit.point, hit.geometric);
+        const double squares = std::floor(uv.x / look.checker->size) + std::floor(uv.y / look.checker->size);
+        hit.odd_square = std::fmod(squares, 2) != 0;
+        hit.colour = hit.odd_square ? look.checker->odd : look.checker->even;
+    }
+    return hit;
+}
+
+/// The outward normals of the object with this number at the ray's distance t, and its surface.
+Hit described(const Scene& scene, const Ray& ray, double t, int number) {
+    const Vec3 point = ray.origin + t * ray.direction;
+    std::size_t i = index(number);
+    if (i < scene.spheres.size()) {
+        const Sphere& sphere = scene.spheres[i];
+        const Vec3 normal = (point - sphere.centre) / std::abs(sphere.radius);
+        return finished(scene, ray, t, number, sphere.surface, normal, normal);
+    }
+    i -= scene.spheres.size();
+    if (i < scene.planes.size()) {
+        const Plane& plane = scene.planes[i];
+        return finished(scene, ray, t, number, plane.surface, plane.normal, plane.normal);
+    }
+    i -= scene.planes.size();
+    if (i < scene.polygons.size()) {
+        const Polygon& polygon = scene.polygons[i];
+        const Vec3 normal = newell_normal(polygon.vertices).normalized();
+        const Vec3 shading = polygon.normals.empty() ? normal : interpolated_normal(polygon, normal, point);
+        return finished(scene, ray, t, number, polygon.surface, normal, shading);
+    }
+    const Cone& cone = scene.cones[i - scene.polygons.size()];
+    const Vec3 normal = ConeFrame(cone).outward_normal(cone, point);
+    return finished(scene, ray, t, number, cone.surface, normal, normal);
+}
+
+}  // namespace
+
+std::optional<double> hit_sphere(const Sphere& sphere, const Ray& ray) {
+    const Vec3 c = sphere.centre - ray.origin;
+    const double b = c.dot(ray.direction);
+    const Vec3 l = c - b * ray.direction;
+    const double discriminant = sphere.radius * sphere.radius - l.dot(l);
+    if (discriminant < 0) return {};
+    const double s = std::sqrt(discriminant);
+    if (sphere.radius > 0 && b - s > 0) return b - s;
+    if (b + s > 0) return b + s;
+    return {};
+}
+
+std::optional<double> hit_plane(const Plane& plane, const Ray& ray) {
+    const double towards = plane.normal.dot(ray.direction);
+    if (towards == 0) return {};
+    const double t = (plane.distance - plane.normal.dot(ray.origin)) / towards;
+    if (t > 0) return t;
+    return {};
+}
+
+std::optional<double> hit_polygon(const Polygon& polygon, const Ray& ray) {
+    const Vec3 normal = newell_normal(polygon.vertices).normalized();
+    const std::optional<double> t = hit_plane({normal, normal.dot(polygon.vertices[0]), 0}, ray);
+    if (t && inside_outline(polygon.vertices, normal, ray.origin + *t * ray.direction)) return t;
+    return {};
+}
+
+std::optional<double> hit_cone(const Cone& cone, const Ray& ray) {
+    const ConeFrame frame(cone);
+    const bool inside_only = cone.base_radius < 0 || cone.apex_radius < 0;
+    // Along and across the axis: |p + t q| = r + slope * dz * t, squared.
+    const Vec3 from_base = ray.origin - cone.base;
+    const double z0 = from_base.dot(frame.axis);
+    const double dz = ray.direction.dot(frame.axis);
+    const Vec3 p = from_base - z0 * frame.axis;
+    const Vec3 q = ray.direction - dz * frame.axis;
+    const double r = frame.base_radius + frame.slope * z0;
+    const double a = q.dot(q) - frame.slope * frame.slope * dz * dz;
+    const double b = p.dot(q) - frame.slope * dz * r;
+    const double c = p.dot(p) - r * r;
+    for (const double t : quadratic_roots(a, b, c)) {
+        const double z = z0 + t * dz;
+        if (t <= 0 || z < 0 || z > frame.height) continue;
+        const Vec3 outward = frame.outward_normal(cone, ray.origin + t * ray.direction);
+        if (!inside_only || outward.dot(ray.direction) > 0) return t;
+    }
+    return {};
+}
+
+std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray, double far) {
+    double nearest = far;
+    int nearest_number = -1;
+    int number = 0;
+    const auto consider = [&](const std::optional<double>& t) {
+        if (t && *t < nearest) {
+            nearest = *t;
+            nearest_number = number;
+        }
+        ++number;
+    };
+    for (const Sphere& sphere : scene.spheres) consider(hit_sphere(sphere, ray));
+    for (const Plane& plane : scene.planes) consider(hit_plane(plane, ray));
+    for (const Polygon& polygon : scene.polygons) consider(hit_polygon(polygon, ray));
+    for (const Cone& cone : scene.cones) consider(hit_cone(cone, ray));
+    if (nearest_number < 0) return {};
+    return described(scene, ray, nearest, nearest_number);
+}
+
+}  // namespace raya::reference

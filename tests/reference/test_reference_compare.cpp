@@ -1,0 +1,124 @@
+// The comparison that judges the kernels must itself be able to refuse; and the threads must not matter.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "reference/reference.hpp"
+#include "scene/nff_reader.hpp"
+
+namespace raya::reference {
+namespace {
+
+/// A sphere, half in the shadow of another, over a background: flat parts and edges.
+Scene two_spheres() {
+    Scene scene;
+    scene.view = {.from = {0, 0, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 40};
+    scene.background = {0.2, 0.3, 0.4};
+    scene.surfaces = {{.colour = {0.8, 0.6, 0.4}, .diffuse = 0.7, .specular = 0.2, .shine = 10, .checker = {}},
+                      {.diffuse = 0.1, .specular = 0.2, .transmittance = 0.6, .refraction = 1.4, .checker = {}}};
+    scene.spheres = {{{0, 0, 0}, 1, 0}, {{0.8, 0.8, 1}, 0.4, 1}};
+    scene.lights = {{{4, 4, 5}, {}}};
+    return scene;
+}
+
+std::vector<float> floats(const Image& image) {
+    std::vector<float> rgb;
+    for (const Colour& pixel : image.pixels)
+        for (int i = 0; i < 3; ++i) rgb.push_back(static_cast<float>(pixel[i]));
+    return rgb;
+}
+
+constexpr Options kOptions{.width = 33, .height = 33};
+
+/// First of the three values of pixel (x, y) in `rgb`.
+std::size_t value_of(int x, int y) { return static_cast<std::size_t>(3 * (y * kOptions.width + x)); }
+
+TEST_CASE("an image agrees with itself, and a render with its pixels") {
+    const Scene scene = two_spheres();
+    const Image image = render(scene, kOptions);
+    const Difference same = compare(image, floats(image), scene, kOptions);
+    CHECK(same.psnr_db > 140);
+    CHECK(same.largest < 1e-7);
+    CHECK((same.over == 0 && same.excused == 0));
+    Counts counts;
+    for (int y = 0; y < 33; ++y)
+        for (int x = 0; x < 33; ++x)
+            REQUIRE(trace_pixel(scene, kOptions, x, y, counts) == image.pixels[value_of(x, y) / 3]);
+    CHECK(counts == image.counts);
+    CHECK(counts.primary == 33 * 33);
+    CHECK((counts.primary_hits > 200 && counts.refracted > 20 && counts.shadow_hits > 20));
+}
+
+TEST_CASE("pixels on an edge are excused, others are not") {
+    const Scene scene = two_spheres();
+    const Image image = render(scene, kOptions);
+    const auto with_error_at = [&](int x, int y, float error) {
+        std::vector<float> rgb = floats(image);
+        rgb[value_of(x, y) + 1] += error;
+        return compare(image, rgb, scene, kOptions);
+    };
+    const Difference inside = with_error_at(12, 20, 0.1F);
+    CHECK((inside.over == 1 && inside.excused == 0));
+    CHECK(inside.largest == Approx(0.1).epsilon(1e-5));
+    CHECK(inside.psnr_db == Approx(10 * std::log10(33 * 33 * 3 / 0.01)).epsilon(1e-5));
+    CHECK(with_error_at(0, 0, 0.1F).excused == 0);
+    CHECK(with_error_at(12, 20, 0.007F).over == 0);
+    CHECK(with_error_at(12, 20, std::nanf("")).over == 1);
+    CHECK(with_error_at(12, 20, std::nanf("")).psnr_db < 0);
+    CHECK(with_error_at(12, 20, HUGE_VALF).over == 1);
+
+    // The sphere of radius 1 seen from 5: its outline lies where tan(angle) = 1 / sqrt(24).
+    const double edge = 16.5 * (1 + 1 / std::sqrt(24) / std::tan(20 * 3.14159265358979 / 180)) - 0.5;
+    const int x = static_cast<int>(std::lround(edge));
+    CAPTURE(edge, x);
+    CHECK(grazes_edge(scene, kOptions, x, 16, 1.05 * std::abs(edge - x)));
+    CHECK_FALSE(grazes_edge(scene, kOptions, x, 16, 0.1 * std::abs(edge - x)));
+}
+
+TEST_CASE("an edge between objects of one colour is an edge too") {
+    Scene scene = two_spheres();
+    scene.spheres.clear();
+    scene.lights.clear();
+    scene.polygons = {{{{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}}, {}, 0},
+                      {{{0, -9, 0}, {9, -9, 0}, {9, 9, 0}, {0, 9, 0}}, {}, 0}};
+    const Options options{.width = 4, .height = 4};  // the edge lies half a pixel right of the second column
+    CHECK(grazes_edge(scene, options, 1, 1, 0.51));
+    CHECK_FALSE(grazes_edge(scene, options, 1, 1, 0.49));
+}
+
+TEST_CASE("wrong colours beyond 1 and below 0 do not count, wrong sizes are refused") {
+    Scene scene = two_spheres();
+    scene.background = {2, 0, 0};
+    const Image image = render(scene, kOptions);
+    std::vector<float> rgb = floats(image);
+    rgb[value_of(0, 0)] = 3;
+    rgb[value_of(0, 0) + 1] = -1;
+    CHECK(compare(image, rgb, scene, kOptions).over == 0);
+    rgb.pop_back();
+    CHECK_THROWS_AS(compare(image, rgb, scene, kOptions), std::invalid_argument);
+}
+
+TEST_CASE("counts on SPD's balls are consistent") {
+    const char* folder = std::getenv("RAYA_SPD_DIR");
+    const auto file =
+        std::filesystem::path(folder ? folder : std::string(RAYA_SOURCE_DIR) + "/../shared/spd") / "balls2.nff";
+    if (!std::filesystem::exists(file)) {
+        WARN("skipped: no SPD scenes; set RAYA_SPD_DIR to the folder of balls2.nff");
+        return;
+    }
+    const Scene scene = read_nff(file);
+    const Counts counts = render(scene, {.width = 65, .height = 65, .bounces = 4, .corners = true}).counts;
+    CHECK(counts.primary == 65 * 65);
+    CHECK(counts.primary_hits == counts.primary);   // the floor fills the view
+    CHECK(counts.reflected > counts.primary / 10);  // from the spheres, whose Ks is 0.5
+    CHECK(counts.reflected < counts.primary * 4);
+    CHECK(counts.refracted == 0);
+    CHECK(counts.shadow <= 3 * (counts.primary + counts.reflected));
+    CHECK((counts.shadow_hits > 0 && counts.shadow_hits < counts.shadow));
+}
+
+}  // namespace
+}  // namespace raya::reference

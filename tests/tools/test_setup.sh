@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# tools/setup on machines that lack packages, made of stand-ins for dpkg-query and sudo: nothing is installed.
+set -euo pipefail
+setup=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../tools/setup
+machine=$(mktemp -d)  # all programs that the script can find
+trap 'rm -rf "$machine"' EXIT
+chmod 755 "$machine"
+ln -s "$(command -v env)" "$(command -v bash)" "$machine"
+
+stand_in() {  # stand_in NAME BODY
+    printf '#!%s\n%s\n' "$(command -v bash)" "$2" >"$machine/$1"
+    chmod 755 "$machine/$1"
+}
+
+# Runs tools/setup with ARGS there as a user without rights; sets out and code. Read from stdin, as that user may not
+# be able to reach this folder.
+run_setup() {
+    local as_nobody=()
+    ((EUID != 0)) || as_nobody=("$(command -v setpriv)" --reuid=65534 --regid=65534 --clear-groups)
+    code=0
+    out=$(PATH=$machine "${as_nobody[@]}" "$machine/bash" -s -- "$@" <"$setup" 2>&1) || code=$?
+}
+
+expect() {  # expect CODE TEXT...: the exit code, and texts that the output holds
+    local wanted=$1 text
+    shift
+    if [[ $code != "$wanted" ]]; then echo "FAILED line ${BASH_LINENO[0]}: exit code $code, not $wanted: $out"; exit 1; fi
+    for text in "$@"; do
+        [[ $out == *"$text"* ]] || { echo "FAILED line ${BASH_LINENO[0]}: no '$text' in: $out"; exit 1; }
+    done
+}
+
+expect_silence() { [[ -z $out ]] || { echo "FAILED line ${BASH_LINENO[0]}: not silent: $out"; exit 1; }; }
+
+line='sudo apt-get update && sudo apt-get install -y --no-install-recommends'
+
+# --print needs no machine at all.
+run_setup --print
+expect 0 "$line g++ cmake" pocl-opencl-icd catch2
+read -ra all <<<"${out#"$line"}"
+run_setup --nonsense
+expect 2 "unknown option '--nonsense'"
+
+# Nothing is missing.
+stand_in dpkg-query "printf '%s installed\n' ${all[*]}"
+run_setup
+expect 0
+expect_silence
+
+# Two are missing, one of them removed but not purged; neither root nor sudo.
+stand_in dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }
+echo catch2 config-files; exit 1"
+run_setup
+expect 1 "neither root nor sudo" "$line cmake catch2"
+
+# The same with a sudo that does not let this user in, and no terminal to ask at.
+stand_in sudo 'exit 1'
+run_setup
+expect 1 "neither root nor sudo" "$line cmake catch2"
+
+# With sudo: lists are brought up to date, then exactly the missing ones installed.
+stand_in sudo '[[ $* == "-n true" ]] || echo "sudo $*"'
+run_setup
+apt='sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq'
+expect 0 "$apt update"$'\n'"$apt install -y --no-install-recommends cmake catch2"
+
+# apt-get fails.
+stand_in sudo '[[ $* != *apt-get* ]]'
+run_setup
+expect 1 "apt-get failed" "$line cmake catch2"
+
+# Not Debian: go on where there are tools to build with.
+rm "$machine/dpkg-query"
+run_setup
+expect 1 "no Debian" libopenimageio-dev "'c++' is missing"
+for tool in c++ cmake ninja; do stand_in "$tool" ''; done
+run_setup
+expect 0 "no Debian" libopenimageio-dev
+
+echo "tools/setup: all as expected"

@@ -1,0 +1,12 @@
+# Writes OUTPUT, a C++ file that holds every file below ROOT as (path, text).
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/*.cl ${ROOT}/*.clh ${ROOT}/*.h)
+list(SORT files)
+set(text "// Made by tools/embed_kernels.cmake from kernels/; edit those files.\n#include \"cl/kernel_source.hpp\"\n\n")
+string(APPEND text "namespace raya {\n\nconst std::map<std::string, std::string>& embedded_kernel_files() {\n")
+string(APPEND text "    static const std::map<std::string, std::string> files = {\n")
+foreach(name IN LISTS files)
+    file(READ ${ROOT}/${name} content)
+    string(APPEND text "{\"${name}\", R\"raya-kernel(${content})raya-kernel\"},\n")
+endforeach()
+string(APPEND text "    };\n    return files;\n}\n\n}  // namespace raya\n")
+file(WRITE ${OUTPUT} "${text}")
