@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "embedded.hpp"
 #include "error.hpp"
 
 namespace raya {
@@ -14,8 +15,8 @@ namespace {
 
 std::string read_kernel_file(const std::string& file, const std::filesystem::path& folder) {
     if (folder.empty()) {
-        const auto found = embedded_kernel_files().find(file);
-        if (found == embedded_kernel_files().end()) throw UserError(fmt::format("no kernel file '{}' in this program", file));
+        const auto found = embedded_files().find("kernels/" + file);
+        if (found == embedded_files().end()) throw UserError(fmt::format("no kernel file '{}' in this program", file));
         return found->second;
     }
     std::ifstream in(folder / file, std::ios::binary);

@@ -28,7 +28,8 @@ std::array<Vec3, 9> nine_directions() {
     return directions;
 }
 
-/// `v` turned by the shortest rotation that takes +z to the unit vector `axis` (Rodrigues); half a turn about y for -z, as SPD has it.
+/// `v` turned by the shortest rotation that takes +z to the unit vector `axis` (Rodrigues); half a turn about y for -z,
+/// as SPD has it.
 Vec3 turned_from_z(const Vec3& v, const Vec3& axis) {
     if (axis.z < -1 + 1e-9) return {-v.x, v.y, -v.z};
     const Vec3 pivot(-axis.y, axis.x, 0);

@@ -43,7 +43,9 @@ class NffReader {
 
     Scene read() {
         if (lower_case(tokens_.peek().text) == "nff")
-            refuse("this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. Haines's NFF");
+            tokens_.refuse(tokens_.peek().line,
+                           "this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. "
+                           "Haines's NFF");
         while (!tokens_.peek().text.empty()) read_entity();
         const int end = tokens_.peek().line;
         if (checker_) tokens_.refuse(checker_line_, "no plane or polygon follows this '#raya checker'");

@@ -12,6 +12,8 @@ namespace {
 
 std::string text_of(const Vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
+std::string after_blank(const Vec3& v) { return fmt::format(" {}", text_of(v)); }
+
 class NffWriter {
   public:
     explicit NffWriter(const Scene& scene) : scene_(scene) {}
@@ -50,7 +52,7 @@ class NffWriter {
         line("v\nfrom {}\nat {}\nup {}", text_of(view.from), text_of(view.at), text_of(view.up));
         line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
         for (const Light& light : scene_.lights)
-            line("l {}{}", text_of(light.position), light.colour ? " " + text_of(*light.colour) : "");
+            line("l {}{}", text_of(light.position), light.colour ? after_blank(*light.colour) : "");
     }
 
     /// An `f` where it differs from the last one, and the checker, which holds for one object only.
@@ -69,7 +71,7 @@ class NffWriter {
         const bool patch = !polygon.normals.empty();
         line("{} {}", patch ? "pp" : "p", polygon.vertices.size());
         for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
-            line("{}{}", text_of(polygon.vertices[i]), patch ? " " + text_of(polygon.normals[i]) : "");
+            line("{}{}", text_of(polygon.vertices[i]), patch ? after_blank(polygon.normals[i]) : "");
     }
 
     const Scene& scene_;

@@ -5,15 +5,15 @@
 //
 //     copy the job's words to local memory, barrier
 //     while a lane has a pixel:
-//         lanes without one take the PE's next pixel and make its primary ray
-//         test all objects for the rays of all lanes                       (geometry/)
-//         shadow rays: add the light's contribution if nothing was hit     (shading/light.clh)
-//         tree rays: shade the hit or add the background                   (shading/shade.clh)
-//         choose what each lane traces next: shadow ray, reflected ray, waiting refracted ray, or nothing: store the pixel
+//         lanes without one store what they finished, take the PE's next pixel and make its primary ray
+//         test all objects for the rays of all lanes                                      (geometry/)
+//         where nothing was hit add the background; else add the ambient term, put the
+//         refracted ray aside, and add each light that a shadow ray reaches                (shading/)
+//         go on with the reflected ray, else with the deepest waiting refracted one, else without a pixel
 //
 // Pixels are summed in the order of their own ray tree, so the bits do not depend on V, group size, mapping or device.
 // Limits: a PE's share < 2^32 pixels; the cost of one pixel < 2^64 cycles; its events < 2^32 each.
-#include "shading/light.clh"
+#include "shading/shade.clh"
 
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..64
@@ -55,12 +55,11 @@ static inline void start_walk(words scene, tree* t, mask fresh, index row, index
     set_lanes(&t->ray.origin, fresh, vec_all(job->eye));
     set_lanes(&t->ray.direction, fresh, vec_normalize(through));
     t->ray.weight.all = choose(fresh, num_const(1.0f), t->ray.weight.all);
-    t->limit = choose(fresh, num_const(RAYA_FAR), t->limit);
     t->level = choose_index(fresh, (index)(0), t->level);
     t->sum = vec_choose(fresh, zero, t->sum);
     t->walking |= fresh;
     for (uint e = 0; e < RAYA_EVENTS; ++e) t->events[e].all = choose_index(fresh, (index)(0), t->events[e].all);
-    t->events[RAYA_PRIMARY].all = tally(t->events[RAYA_PRIMARY].all, fresh);
+    count_event(t, RAYA_PRIMARY, fresh);
 }
 
 // Lanes without a pixel store the one that they finished and take the PE's next one.
@@ -83,11 +82,6 @@ static inline void take_pixels(words scene, tree* t, pixel_store* store, volatil
     if (mask_any(fresh.truth)) start_walk(scene, t, fresh.truth, row.all, column.all);
 }
 
-// One more event of `kind` in each lane for each of the `objects` that every ray is tested against.
-static inline void count_tests(tree* t, uint kind, uint objects) {
-    t->events[kind].all = tally_by(t->events[kind].all, t->walking, objects);
-}
-
 static inline void trace_share(words scene, pixel_store* store, volatile __local uint* next, uint end) {
     const job_words job = (job_words)scene;
     tree t;
@@ -95,16 +89,11 @@ static inline void trace_share(words scene, pixel_store* store, volatile __local
     for (;;) {
         if (mask_any(mask_not(t.walking))) take_pixels(scene, &t, store, next, end);
         if (!mask_any(t.walking)) return;
-        const ray r = {vec_of_lanes(t.ray.origin), vec_of_lanes(t.ray.direction), t.limit};
+        const ray r = {vec_of_lanes(t.ray.origin), vec_of_lanes(t.ray.direction),
+                       choose(t.walking, num_const(RAYA_FAR), num_const(0.0f))};
         const hit h = closest_hit(scene, r);
-        count_tests(&t, RAYA_SPHERE_TESTS, job->spheres);
-        count_tests(&t, RAYA_PLANE_TESTS, job->planes);
-        count_tests(&t, RAYA_POLYGON_TESTS, job->polygons);
-        count_tests(&t, RAYA_CONE_TESTS, job->cones);
+        count_tests(&t, job, t.walking);
         shade(scene, &t, h);
-        settle_lights(scene, &t, h);
-        ask_lights(scene, &t);
-        next_tree_ray(&t);
     }
 }
 

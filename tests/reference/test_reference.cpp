@@ -1,7 +1,9 @@
 // The reference renderer on scenes with known answers.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "reference/reference.hpp"
 

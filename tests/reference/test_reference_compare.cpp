@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -71,7 +72,7 @@ TEST_CASE("pixels on an edge are excused, others are not") {
     CHECK(with_error_at(12, 20, HUGE_VALF).over == 1);
 
     // The sphere of radius 1 seen from 5: its outline lies where tan(angle) = 1 / sqrt(24).
-    const double edge = 16.5 * (1 + 1 / std::sqrt(24) / std::tan(20 * 3.14159265358979 / 180)) - 0.5;
+    const double edge = 16.5 * (1 + 1 / std::sqrt(24) / std::tan(20 * std::numbers::pi / 180)) - 0.5;
     const int x = static_cast<int>(std::lround(edge));
     CAPTURE(edge, x);
     CHECK(grazes_edge(scene, kOptions, x, 16, 1.05 * std::abs(edge - x)));

@@ -1,4 +1,5 @@
 // Newell's normal, the dropped axis, and ear clipping on outlines of every awkward kind.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>

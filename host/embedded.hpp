@@ -1,0 +1,11 @@
+// Files that the program carries within itself, so that it runs from anywhere.
+#pragma once
+#include <map>
+#include <string>
+
+namespace raya {
+
+/// Text by path from the project's root: everything below kernels/ and the benchmark's scene. Defined in a file that the build makes.
+const std::map<std::string, std::string>& embedded_files();
+
+}  // namespace raya

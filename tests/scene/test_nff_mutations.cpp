@@ -1,0 +1,128 @@
+// Damaged files: each is either read, and then survives being written and read again, or refused with file and line.
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "error.hpp"
+#include "scene/nff_reader.hpp"
+#include "scene/nff_writer.hpp"
+#include "scene/split_mix.hpp"
+
+using namespace raya;
+
+namespace {
+
+const std::array<std::string, 4> kTexts{
+    "b 0.078 0.361 0.753\nv\nfrom 2.1 1.3 1.7\nat 0 0 0\nup 0 0 1\nangle 45\nhither 0.01\nresolution 512 512\nl 4 3 2\n"
+    "f 1 0.75 0.33 0.8 0 100000 0 1\np 4\n12 12 -0.5\n-12 12 -0.5\n-12 -12 -0.5\n12 -12 -0.5\ns 0 0 0 0.5\n",
+    "# planes\nv\nfrom 0 -8 3\nat 0 0 1\nup 0 0 1\nangle 30\nhither 0\nresolution 64 64\nl 1 2 3 0.5 0.5 0.5\n"
+    "#raya checker 1 1 1 0 0 0 1\n#raya plane 0 0 1 0\nf 1 1 1 0 0.1 9 0.9 1.5\n#raya plane 1 2 3 4\ns 0 0 1 -1e0\n",
+    "v\r\nfrom 0 0 -8\r\nat 0 0 0\r\nup 0 1 0\r\nangle 25\r\nhither 0.001\r\nresolution 256 256\r\nl -10 3 -20\r\n"
+    "f 0.7 0.5 0.5 0.7 0.7 11.1 0 1\r\nc -0.7 -0.1 -0.2 0.075 0.7 0.1 0.2 0.075\r\nc 0 0 0 -1\r\n0 0 1 0\r\n",
+    "v from 0 0 9 at 0 0 0 up 0 1 0 angle 25 hither 0 resolution 9 9\npp 3\n0 0 0 0 0 1\n1 0 0 0.1 0 1\n0 1 0 0 0.1 1\n"
+    "p 5 0 0 0 2 0 0 2 2 0 1 0.5 0 0 2 0\n#raya checker 1 0 0 0 1 0 .25 # note\npp 4\n0 0 1 0 0 1\n1 0 1 0 0 1\n"
+    "1 1 1 0 0 1\n0 1 1 0 0 1\n"};
+
+class Mutator {
+  public:
+    explicit Mutator(std::uint64_t seed) : random_(seed) {}
+
+    std::string mutated() {
+        std::string text = kTexts[below(kTexts.size())];
+        for (std::size_t rounds = 1 + below(3); rounds > 0; --rounds) mutate(text);
+        return text;
+    }
+
+  private:
+    std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_.next() % limit); }
+
+    /// A place in the text, its end included, and a length from there.
+    std::pair<std::size_t, std::size_t> piece(const std::string& text) {
+        const std::size_t start = below(text.size() + 1);
+        return {start, below(std::min<std::size_t>(40, text.size() - start) + 1)};
+    }
+
+    void mutate(std::string& text) {
+        static const std::array<std::string, 20> kWords{
+            "nan", "-inf", "1e999", "-1",       "0",  "1e-320", "1000000000", "#raya ", "\n",  " ",
+            "p ",  "v\n",  "\ns ",  "checker ", "c ", "pp 3\n", "#",          "-",      "1e9", std::string(1, '\0')};
+        const auto [start, length] = piece(text);
+        switch (below(9)) {
+            case 0:  // flip a bit
+                if (start < text.size()) text[start] = static_cast<char>(text[start] ^ (1 << below(8)));
+                break;
+            case 1:  // any byte
+                if (start < text.size()) text[start] = static_cast<char>(below(256));
+                break;
+            case 2:
+            case 3: {  // another digit
+                const std::size_t digit = text.find_first_of("0123456789", start);
+                if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(10));
+                break;
+            }
+            case 4:
+                text.erase(start, length);
+                break;
+            case 5:
+                text.insert(start, text.substr(start, length));
+                break;
+            case 6:
+                text.resize(start);
+                break;
+            case 7:
+                text.replace(start, below(2) * length, kWords[below(kWords.size())]);
+                break;
+            default: {  // splice in a piece of another scene
+                const std::string& other = kTexts[below(kTexts.size())];
+                const auto [from, count] = piece(other);
+                text.replace(start, length, other, from, count);
+            }
+        }
+    }
+
+    SplitMix random_;
+};
+
+/// Whether a message starts with "m.nff:LINE: " and goes on.
+bool has_place(const std::string& message) {
+    const std::string name = "m.nff:";
+    if (!message.starts_with(name)) return false;
+    const std::size_t end = message.find_first_not_of("0123456789", name.size());
+    return end != std::string::npos && end > name.size() && message[name.size()] != '0' &&
+           message.substr(end, 2) == ": " && message.size() > end + 2;
+}
+
+/// What is wrong with the reader's answer to a text, or nothing. Counts the accepted ones.
+std::string complaint(const std::string& text, int& accepted) {
+    try {
+        const Scene scene = parse_nff(text, "m.nff");
+        ++accepted;
+        return parse_nff(write_nff(scene), "m.nff") == scene ? "" : "changed by being written and read";
+    } catch (const UserError& error) {
+        return has_place(error.what()) ? "" : std::string("message without place: ") + error.what();
+    } catch (const std::exception& error) {
+        return std::string("not a UserError: ") + error.what();
+    }
+}
+
+}  // namespace
+
+TEST_CASE("mutated files are read or refused, never anything else", "[nff]") {
+    const char* given = std::getenv("RAYA_MUTATIONS");
+    const int count = given ? std::atoi(given) : 4000;
+    int accepted = 0;
+    for (int seed = 0; seed < count; ++seed) {
+        const std::string text = Mutator(static_cast<std::uint64_t>(seed)).mutated();
+        const std::string wrong = complaint(text, accepted);
+        if (wrong.empty()) continue;
+        CAPTURE(seed, text);
+        FAIL_CHECK(wrong);
+    }
+    INFO(accepted << " of " << count << " accepted");
+    CHECK(accepted > count / 20);  // the mutations leave some files whole,
+    CHECK(accepted < count / 2);   // and break most
+}
