@@ -36,30 +36,34 @@ std::string included_file(const std::string& line) {
     return line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
 }
 
-void append(std::string& source, const std::string& file, const std::filesystem::path& folder, std::set<std::string>& seen) {
-    if (!seen.insert(file).second) return;
-    std::istringstream text(read_kernel_file(file, folder));
-    source += fmt::format("#line 1 \"{}\"\n", file);
+void append(std::string& source, const std::string& text, const std::string& name, const std::filesystem::path& folder,
+            std::set<std::string>& seen) {
+    source += fmt::format("#line 1 \"{}\"\n", name);
+    std::istringstream lines(text);
     int number = 0;
-    for (std::string line; std::getline(text, line);) {
+    for (std::string line; std::getline(lines, line);) {
         ++number;
         const std::string included = included_file(line);
         if (included.empty()) {
             source += line + '\n';
         } else {
-            append(source, included, folder, seen);
-            source += fmt::format("#line {} \"{}\"\n", number + 1, file);
+            if (seen.insert(included).second) append(source, read_kernel_file(included, folder), included, folder, seen);
+            source += fmt::format("#line {} \"{}\"\n", number + 1, name);
         }
     }
 }
 
 }  // namespace
 
-std::string kernel_source(const std::string& file, const std::filesystem::path& folder) {
+std::string expand_kernel_source(const std::string& text, const std::string& name, const std::filesystem::path& folder) {
     std::string source;
-    std::set<std::string> seen;
-    append(source, file, folder, seen);
+    std::set<std::string> seen = {name};
+    append(source, text, name, folder, seen);
     return source;
+}
+
+std::string kernel_source(const std::string& file, const std::filesystem::path& folder) {
+    return expand_kernel_source(read_kernel_file(file, folder), file, folder);
 }
 
 }  // namespace raya

@@ -10,4 +10,7 @@ namespace raya {
 /// Throws UserError for a file or an include that does not exist.
 std::string kernel_source(const std::string& file, const std::filesystem::path& folder = {});
 
+/// The same for a `text` that is no file of kernels/; `name` stands for it in a build log. Its includes are paths below kernels/.
+std::string expand_kernel_source(const std::string& text, const std::string& name, const std::filesystem::path& folder = {});
+
 }  // namespace raya

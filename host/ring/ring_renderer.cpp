@@ -21,6 +21,7 @@ JobSettings job_settings(const RingSettings& settings) {
 // Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress bar moves, Ctrl-C is
 // heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few wait for the last.
 std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share) {
+    if (settings.pixels_per_launch) return settings.pixels_per_launch;
     constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
     constexpr double kRaysPerPixel = 6;      // of the project's scenes
     const double tests_of_one = kRaysPerPixel * static_cast<double>(objects) * settings.mapping.pes;

@@ -33,6 +33,7 @@ struct RingSettings {
     std::uint32_t bounces = 8;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
+    std::uint32_t pixels_per_launch = 0;  // of each PE; 0: as many as take about a second, so that progress can be shown
 };
 
 struct RingResult {

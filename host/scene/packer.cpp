@@ -142,8 +142,6 @@ constexpr std::size_t kMostWords = std::size_t{1} << 30;
 
 }  // namespace
 
-double self_intersection_margin(const Scene& scene) { return scene_extent(scene) * 0x1p-18; }
-
 PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     raya_job job{};
     job.mapping = settings.mapping;
@@ -152,7 +150,7 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     pack_camera(job, scene.view, settings);
     store(job.background, scene.background);
     job.ambient = static_cast<float>(ambient_intensity(scene));
-    job.margin = static_cast<float>(self_intersection_margin(scene));
+    job.extent = static_cast<float>(scene_extent(scene));
 
     PackedJob packed;
     Words& words = packed.words;

@@ -29,8 +29,4 @@ struct PackedJob {
 /// a polygon of its own. Throws UserError for a scene of more than 2^30 words.
 PackedJob pack_job(const Scene& scene, const JobSettings& settings);
 
-/// The distance at which secondary rays start from the surface that they leave: the scene's extent times 2^-18, scene units. That is 64 units in
-/// the last place of the largest coordinate, some ten times the error of a hit point.
-double self_intersection_margin(const Scene& scene);
-
 }  // namespace raya

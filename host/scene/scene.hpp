@@ -33,7 +33,7 @@ struct Light {
 
 /// Squares of side `size`, of two colours in turn, in place of the surface's own colour (kernels/README.md, Checker).
 struct Checker {
-    Colour even, odd;
+    Colour even{1, 1, 1}, odd{0, 0, 0};
     double size = 1;  // scene units, > 0
     bool operator==(const Checker&) const = default;
 };
@@ -46,7 +46,7 @@ struct Surface {
     double shine = 0;          // Phong exponent
     double transmittance = 0;  // T: share of the refracted ray
     double refraction = 1;     // index of refraction, > 0 where transmittance > 0
-    std::optional<Checker> checker;
+    std::optional<Checker> checker{};
     bool operator==(const Surface&) const = default;
 };
 

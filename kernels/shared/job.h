@@ -21,7 +21,7 @@ typedef struct {
     float column_step[3], row_step[3];  // what one column, one row adds to it
     float background[3];             // radiance of a miss
     float ambient;                   // intensity A
-    float margin;                    // distance at which a ray starts from the surface that it leaves, scene units
+    float extent;                    // size of the scene: largest coordinate of eye and finite objects, scene units
 } raya_job;
 RAYA_SHARED_SIZE(raya_job, 4 * (5 + 1 + 5 + 5 + 13 + 17));
 

@@ -1,0 +1,79 @@
+// What the geometry and shading headers make of given rays. A work-group is one work-item, which takes the next V rays;
+// `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
+#include "shading/shade.clh"
+
+static inline void store_ray(__global float* to, uint stride, const tree_ray* r) {
+    store_vec(to, stride, vec_of_lanes(r->origin));
+    store_vec(to + 3, stride, vec_of_lanes(r->direction));
+    store_lanes(to + 6, stride, r->weight.all);
+}
+
+static inline ray load_ray(__global const float* rays, uint first) {
+    __global const float* from = rays + first * 7;
+    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
+    return r;
+}
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void closest_hits(__global const uint* restrict job,
+                  __global const float* restrict rays,
+                  __global uint* restrict objects,    // [ray]: number, RAYA_NO_OBJECT
+                  __global float* restrict distances) // [ray]
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const hit h = closest_hit(job, load_ray(rays, first));
+    store_index(objects + first, 1, h.object);
+    store_lanes(distances + first, 1, h.distance);
+}
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void find_places(__global const uint* restrict job,
+                 __global const float* restrict rays,
+                 __global uint* restrict leaving,  // [ray]: 0 or 1
+                 __global float* restrict places)  // [ray][6][3]: P, P+, P-, G, N, colour; of a miss undefined
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const ray r = load_ray(rays, first);
+    const hit h = closest_hit(job, r);
+    const mask struck = h.object != RAYA_NO_OBJECT;
+    const hit_place p = find_place(job, struck, h, r.origin, r.direction);
+    store_index(leaving + first, 1, choose_index(p.leaving, (index)(1), (index)(0)));
+    __global float* to = places + first * 18;
+    store_vec(to, 18, p.point);
+    store_vec(to + 3, 18, p.outer);
+    store_vec(to + 6, 18, p.inner);
+    store_vec(to + 9, 18, p.geometric);
+    store_vec(to + 12, 18, p.normal);
+    store_vec(to + 15, 18, surface_colour(job, struck, &p));
+}
+
+// One step of the walk: the given rays are those of `level`, of weight 1/2.
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void shade_once(__global const uint* restrict job,
+                __global const float* restrict rays,
+                const uint level,
+                __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: walking (0 or 1), level, waits, events
+                __global float* restrict numbers)  // [ray][17]: sum, ray followed now, ray that waits from `level`
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const ray r = load_ray(rays, first);
+    tree t;
+    clear_tree(&t);
+    t.ray.origin = lanes_of_vec(r.origin);
+    t.ray.direction = lanes_of_vec(r.direction);
+    t.ray.weight.all = num_const(0.5f);
+    t.walking = mask_all(1);
+    t.level = (index)(level);
+    for (uint i = 0; i < RAYA_PENDING; ++i) t.pending[i] = t.ray;
+    shade(job, &t, closest_hit(job, r));
+
+    const uint words = 3 + RAYA_EVENTS;
+    __global uint* to = state + first * words;
+    store_index(to, words, choose_index(t.walking, (index)(1), (index)(0)));
+    store_index(to + 1, words, t.level);
+    store_index(to + 2, words, t.waits.all);
+    for (uint e = 0; e < RAYA_EVENTS; ++e) store_index(to + 3 + e, words, t.events[e].all);
+    store_vec(numbers + first * 17, 17, t.sum);
+    store_ray(numbers + first * 17 + 3, 17, &t.ray);
+    store_ray(numbers + first * 17 + 10, 17, &t.pending[min(level, (uint)(RAYA_PENDING - 1))]);
+}

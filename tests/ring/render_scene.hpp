@@ -1,0 +1,46 @@
+// Renders on the ring machine in a line, for tests. A device is required: without one these tests fail, they are not skipped.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ring/mapping.hpp"
+#include "ring/ring_renderer.hpp"
+#include "scene/nff_reader.hpp"
+
+namespace raya {
+
+struct RingCase {
+    std::uint32_t width = 64, height = 48;
+    std::uint32_t pes = 64, offset = 8;
+    std::string fold = "cyclic", machine = "grande";
+    std::uint32_t lanes = 0, group = 0, bounces = 8;  // lanes, group 0: the device's own
+    Sampling sampling = Sampling::kCentres;
+    std::vector<std::string> more_options{};
+};
+
+inline RingSettings settings_of(const RingCase& c) {
+    RingSettings settings;
+    settings.machine = machine_named(c.machine);
+    settings.mapping = make_mapping("cyclic", c.width, c.height, c.pes, c.offset, c.fold);
+    settings.bounces = c.bounces;
+    settings.sampling = c.sampling;
+    settings.kernels.lanes = c.lanes;
+    settings.kernels.group_size = c.group;
+    settings.kernels.more_options = c.more_options;
+    return settings;
+}
+
+inline RingResult render_scene(const Scene& scene, const RingCase& c) {
+    Session session(choose_device(""));
+    return RingRenderer(session, scene, settings_of(c)).render();
+}
+
+inline Scene project_scene(const std::string& name) { return read_nff(RAYA_SOURCE_DIR "/scenes/" + name + ".nff"); }
+
+/// The scenes of scenes/, which together hold every kind of object and surface.
+inline const std::vector<std::string>& project_scenes() {
+    static const std::vector<std::string> names = {"centre", "spheres", "mirrors", "glass", "polygons", "cones", "planes"};
+    return names;
+}
+
+}  // namespace raya

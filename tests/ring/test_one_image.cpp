@@ -1,0 +1,125 @@
+// Promise 1: the pixels do not depend on how the work is spread, nor on the device's lanes, groups or optimiser.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "ring/render_scene.hpp"
+
+namespace raya {
+namespace {
+
+// One scene with every kind of object and surface: the polygons' scene with the others' objects in it.
+Scene mixed_scene() {
+    Scene scene = project_scene("polygons");
+    for (const char* name : {"cones", "glass", "mirrors"}) {
+        const Scene other = project_scene(name);
+        const int shift = static_cast<int>(scene.surfaces.size());
+        scene.surfaces.insert(scene.surfaces.end(), other.surfaces.begin(), other.surfaces.end());
+        const auto take = [&](auto& to, auto from) {
+            for (auto& object : from) object.surface += shift;
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        take(scene.spheres, other.spheres);
+        take(scene.planes, other.planes);
+        take(scene.cones, other.cones);
+        take(scene.polygons, other.polygons);
+    }
+    return scene;
+}
+
+struct Answer {
+    std::string hash;
+    EventCounts events;
+    bool operator==(const Answer&) const = default;
+};
+
+Answer answer_of(const RingResult& result) { return {pixel_hash(result.image), result.events}; }
+
+}  // namespace
+
+TEST_CASE("lanes, group size and the optimiser change no bit of the image and no count", "[ring]") {
+    const Scene scene = mixed_scene();
+    const Answer expected = answer_of(render_scene(scene, {.lanes = 1, .group = 1}));
+    CHECK(expected.events[RAYA_PRIMARY] == 64 * 48);
+    for (const auto kind : {RAYA_REFLECTED, RAYA_REFRACTED, RAYA_SHADOW_HITS, RAYA_HIGHLIGHTS, RAYA_SPHERE_TESTS,
+                            RAYA_PLANE_TESTS, RAYA_POLYGON_TESTS, RAYA_CONE_TESTS})
+        CHECK(expected.events[kind] > 0);
+    const RingCase cases[] = {
+        {.lanes = 4, .group = 1},  {.lanes = 8, .group = 1},  {.lanes = 16, .group = 1}, {.lanes = 1, .group = 64},
+        {.lanes = 4, .group = 16}, {.lanes = 16, .group = 3}, {.lanes = 1, .group = 1, .more_options = {"-cl-opt-disable"}},
+        {.lanes = 16, .group = 1, .more_options = {"-cl-opt-disable"}}};
+    for (const RingCase& c : cases) {
+        CAPTURE(c.lanes, c.group, c.more_options);
+        CHECK(answer_of(render_scene(scene, c)) == expected);
+    }
+}
+
+TEST_CASE("PEs, offset, fold and machine change no bit of the image and no count", "[ring]") {
+    const Scene scene = mixed_scene();
+    const Answer expected = answer_of(render_scene(scene, {.pes = 1, .offset = 0}));
+    for (const std::uint32_t pes : {1u, 7u, 64u, 256u, 1000u, 64u * 48u})
+        for (const char* fold : {"cyclic", "block"})
+            for (const std::uint32_t offset : {0u, 16u, 63u}) {
+                CAPTURE(pes, fold, offset);
+                CHECK(answer_of(render_scene(scene, {.pes = pes, .offset = offset, .fold = fold})) == expected);
+            }
+}
+
+TEST_CASE("any image size is traced whole, whatever is left over for the last lane", "[ring]") {
+    const Scene scene = project_scene("glass");
+    const std::uint32_t seed = 20251;
+    std::mt19937 random(seed);
+    const auto between = [&](std::uint32_t low, std::uint32_t high) {
+        return std::uniform_int_distribution<std::uint32_t>(low, high)(random);
+    };
+    for (int i = 0; i < 40; ++i) {
+        RingCase c;
+        c.width = between(1, 40);
+        c.height = between(1, 40);
+        c.pes = between(1, c.width * c.height);
+        c.offset = between(0, c.width - 1);
+        c.fold = i % 2 ? "block" : "cyclic";
+        CAPTURE(seed, i, c.width, c.height, c.pes, c.offset, c.fold);
+        const Answer spread = answer_of(render_scene(scene, c));
+        c.pes = 1;
+        c.lanes = 1;
+        CHECK(spread == answer_of(render_scene(scene, c)));
+    }
+}
+
+TEST_CASE("a PE too small for its share is gathered block by block, with the same image", "[ring]") {
+    const Scene scene = project_scene("centre");
+    const RingResult whole = render_scene(scene, {.width = 128, .height = 128, .pes = 128, .machine = "spa"});
+    const RingResult blocks = render_scene(scene, {.width = 128, .height = 128, .pes = 1, .machine = "spa"});
+    CHECK(whole.communication.gathers == 1);
+    CHECK(blocks.communication.gathers > 1);
+    CHECK(blocks.communication.gather_words == 3 * 128 * 128);
+    CHECK(blocks.pe_memory.bytes() <= 32 * 1024);
+    CHECK(answer_of(blocks) == answer_of(whole));
+}
+
+TEST_CASE("a long trace is cut into launches that report progress, with the same image", "[ring]") {
+    const Scene scene = project_scene("centre");
+    Session session(choose_device(""));
+    RingSettings settings = settings_of({.width = 96, .height = 96, .pes = 4});
+    RingRenderer renderer(session, scene, settings);
+    std::vector<double> reported;
+    const RingResult first = renderer.render([&](double done) { reported.push_back(done); });
+    CHECK(std::is_sorted(reported.begin(), reported.end()));
+    CHECK(reported.back() == 1);
+    settings.pixels_per_launch = 100;
+    RingRenderer sliced(session, scene, settings);
+    const RingResult second = sliced.render([&](double done) { reported.push_back(done); });
+    CHECK(reported.size() == 1 + (96 * 96 / 4 + 99) / 100);
+    CHECK(answer_of(second) == answer_of(first));
+}
+
+TEST_CASE("a second render of the same renderer gives the same answer", "[ring]") {
+    Session session(choose_device(""));
+    RingRenderer renderer(session, project_scene("cones"), settings_of({}));
+    const RingResult first = renderer.render(), second = renderer.render();
+    CHECK(answer_of(first) == answer_of(second));
+    CHECK(second.communication.broadcasts == 1);
+    CHECK(first.load.per_pe == second.load.per_pe);
+}
+
+}  // namespace raya

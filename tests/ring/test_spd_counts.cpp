@@ -1,0 +1,57 @@
+// Rays by kind against the counts that SPD publishes for its scenes: 513 x 513 rays through pixel corners, tree depth 5 with the eye ray as 1.
+// "Implementations should agree within about 10 %"; these bounds are tighter, two published implementations and a percent around them.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "ring/render_scene.hpp"
+#include "scene/generate.hpp"
+
+namespace raya {
+namespace {
+
+EventCounts count_rays(const Scene& scene) {
+    return render_scene(scene, {.width = 513, .height = 513, .pes = 513, .offset = 16, .bounces = 4, .sampling = Sampling::kCorners}).events;
+}
+
+void check_between(std::uint64_t value, double low, double high) {
+    CHECK(double(value) >= low);
+    CHECK(double(value) <= high);
+}
+
+// A file of the SPD programs, where they are at hand.
+std::filesystem::path spd_file(const std::string& name) {
+    const char* folder = std::getenv("RAYA_SPD_DIR");
+    return std::filesystem::path(folder ? folder : RAYA_SOURCE_DIR "/../shared/spd") / name;
+}
+
+}  // namespace
+
+TEST_CASE("balls gives SPD's ray counts", "[ring]") {
+    const EventCounts e = count_rays(generate_balls(4));
+    CHECK(e[RAYA_PRIMARY] == 513 * 513);
+    CHECK(e[RAYA_PRIMARY_HITS] == 263169);
+    check_between(e[RAYA_REFLECTED], 175000, 180500);
+    CHECK(e[RAYA_REFRACTED] == 0);
+    check_between(e[RAYA_SHADOW], 945000, 969000);
+    const std::uint64_t rays = e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_SHADOW];
+    CHECK(e[RAYA_SPHERE_TESTS] == 7381 * rays);
+    CHECK(e[RAYA_POLYGON_TESTS] == rays);
+}
+
+TEST_CASE("SPD's own files give SPD's ray counts, where they are at hand", "[ring]") {
+    if (!std::filesystem::exists(spd_file("tetra.nff"))) {
+        WARN("no SPD files: set RAYA_SPD_DIR to a folder with tetra.nff and mount.nff");
+        return;
+    }
+    const EventCounts tetra = count_rays(read_nff(spd_file("tetra.nff")));
+    check_between(tetra[RAYA_PRIMARY_HITS], 49788 * 0.99, 49950 * 1.01);
+    CHECK(tetra[RAYA_REFLECTED] + tetra[RAYA_REFRACTED] == 0);
+    check_between(tetra[RAYA_SHADOW], 46112 * 0.99, 46262 * 1.01);
+    const EventCounts mount = count_rays(read_nff(spd_file("mount.nff")));
+    check_between(mount[RAYA_PRIMARY_HITS], 173125 * 0.99, 173685 * 1.01);
+    check_between(mount[RAYA_REFLECTED] + mount[RAYA_REFRACTED], 709538 * 0.99, 710436 * 1.01);
+    check_between(mount[RAYA_SHADOW], 412922 * 0.99, 412922 * 1.01);
+}
+
+}  // namespace raya
