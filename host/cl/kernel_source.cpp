@@ -21,8 +21,9 @@ std::string read_kernel_file(const std::string& file, const std::filesystem::pat
     }
     std::ifstream in(folder / file, std::ios::binary);
     if (!in) {
-        throw UserError(fmt::format("cannot read kernel file '{}': --kernel-dir must be a folder like the project's kernels/",
-                                    (folder / file).string()));
+        throw UserError(
+            fmt::format("cannot read kernel file '{}': --kernel-dir must be a folder like the project's kernels/",
+                        (folder / file).string()));
     }
     std::ostringstream text;
     text << in.rdbuf();
@@ -47,7 +48,8 @@ void append(std::string& source, const std::string& text, const std::string& nam
         if (included.empty()) {
             source += line + '\n';
         } else {
-            if (seen.insert(included).second) append(source, read_kernel_file(included, folder), included, folder, seen);
+            if (seen.insert(included).second)
+                append(source, read_kernel_file(included, folder), included, folder, seen);
             source += fmt::format("#line {} \"{}\"\n", number + 1, name);
         }
     }
@@ -55,7 +57,8 @@ void append(std::string& source, const std::string& text, const std::string& nam
 
 }  // namespace
 
-std::string expand_kernel_source(const std::string& text, const std::string& name, const std::filesystem::path& folder) {
+std::string expand_kernel_source(const std::string& text, const std::string& name,
+                                 const std::filesystem::path& folder) {
     std::string source;
     std::set<std::string> seen = {name};
     append(source, text, name, folder, seen);

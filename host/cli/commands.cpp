@@ -20,7 +20,8 @@ int fail(const char* kind, const std::exception& error, int code) {
 }  // namespace
 
 int run_program(int argc, char** argv) {
-    CLI::App program{"raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.", "raya"};
+    CLI::App program{"raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.",
+                     "raya"};
     program.require_subcommand(1);
     program.set_version_flag("--version", "raya " RAYA_VERSION);
     program.footer("Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 1 a fault of raya's own.");

@@ -7,8 +7,8 @@ class App;
 
 namespace raya {
 
-/// Parses the command line, runs the command and returns the exit code: 0 done, 2 for a mistake in options or input, 3 for trouble with the
-/// device, 1 for a fault of our own. Messages go to stderr.
+/// Parses the command line, runs the command and returns the exit code: 0 done, 2 for a mistake in options or input, 3
+/// for trouble with the device, 1 for a fault of our own. Messages go to stderr.
 int run_program(int argc, char** argv);
 
 void add_render_command(CLI::App& program);

@@ -15,28 +15,33 @@ namespace {
 const char* yes(bool truth) { return truth ? "yes" : "no"; }
 
 void list_devices() {
-    std::vector<std::vector<std::string>> rows = {{"#", "device", "platform", "type", "units", "lanes", "group", "local KB", "global MB",
-                                                   "div/sqrt exact", "fma", "profiling", "usable"}};
+    std::vector<std::vector<std::string>> rows = {{"#", "device", "platform", "type", "units", "lanes", "group",
+                                                   "local KB", "global MB", "div/sqrt exact", "fma", "profiling",
+                                                   "usable"}};
     std::vector<std::string> versions;
     for (const cl::Device& device : all_devices()) {
         const DeviceInfo info = device_info(device);
-        rows.push_back({std::to_string(rows.size() - 1), info.name, info.platform, info.type, std::to_string(info.compute_units),
-                        std::to_string(default_lanes(info)), std::to_string(default_group_size(info)),
-                        fmt::format("{}{}", info.local_memory_bytes / 1024, info.local_memory_is_dedicated ? "" : " (global)"),
-                        std::to_string(info.global_memory_bytes >> 20), yes(info.correctly_rounded_divide_sqrt),
-                        yes(info.fused_multiply_add), yes(info.profiling), yes(info.available && info.compiler_available)});
+        rows.push_back(
+            {std::to_string(rows.size() - 1), info.name, info.platform, info.type, std::to_string(info.compute_units),
+             std::to_string(default_lanes(info)), std::to_string(default_group_size(info)),
+             fmt::format("{}{}", info.local_memory_bytes / 1024, info.local_memory_is_dedicated ? "" : " (global)"),
+             std::to_string(info.global_memory_bytes >> 20), yes(info.correctly_rounded_divide_sqrt),
+             yes(info.fused_multiply_add), yes(info.profiling), yes(info.available && info.compiler_available)});
         versions.push_back(fmt::format("{}: {}, driver {}", versions.size(), info.version, info.driver));
     }
     if (versions.empty()) choose_device("");  // throws, with the remedy
     fmt::print("{}\n", text_table(rows));
     for (const std::string& version : versions) fmt::print("{}\n", version);
-    fmt::print("\nlanes, group: what raya chooses unless given. --device takes a number or a part of a name; so does RAYA_DEVICE.\n");
+    fmt::print(
+        "\nlanes, group: what raya chooses unless given. --device takes a number or a part of a name; so does "
+        "RAYA_DEVICE.\n");
 }
 
 }  // namespace
 
 void add_devices_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("devices", "List every OpenCL device of every platform, with what matters here");
+    CLI::App* command =
+        program.add_subcommand("devices", "List every OpenCL device of every platform, with what matters here");
     command->callback(list_devices);
 }
 

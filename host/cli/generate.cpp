@@ -1,11 +1,12 @@
 // raya generate: scenes that a program makes.
+#include "scene/generate.hpp"
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
 #include "report/whole_file.hpp"
-#include "scene/generate.hpp"
 #include "scene/nff_writer.hpp"
 
 namespace raya {
@@ -31,26 +32,39 @@ void add_generate_command(CLI::App& program) {
     command->require_subcommand(1);
     const auto options = std::make_shared<GenerateOptions>();
 
-    CLI::App* balls = add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square");
-    balls->add_option("--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")->capture_default_str();
+    CLI::App* balls =
+        add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square");
+    balls->add_option("--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")
+        ->type_name("LEVEL")
+        ->capture_default_str();
     balls->callback([options] { write_whole_file(options->output, write_nff(generate_balls(options->level))); });
 
-    CLI::App* uniform = add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube");
-    uniform->add_option("N", options->count, "Spheres, 1..1000000")->required();
-    uniform->add_option("--voxels", options->voxels, "Voxels along x, y and z, 1..256 each")->type_name("XxYxZ")->required();
+    CLI::App* uniform =
+        add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube");
+    uniform->add_option("N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
+    uniform->add_option("--voxels", options->voxels, "Voxels along x, y and z, 1..256 each")
+        ->type_name("XxYxZ")
+        ->required();
     uniform->callback([options] {
-        const auto sides = parse_sizes("--voxels", options->voxels, 3);
-        const Scene scene = generate_uniform(options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
+        const auto sides = parse_voxels(options->voxels);
+        const Scene scene = generate_uniform(
+            options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
         write_whole_file(options->output, write_nff(scene));
     });
 
-    CLI::App* random = add_kind(*command, *options, "random", "N spheres anywhere in a cube, the same for the same seed");
-    random->add_option("N", options->count, "Spheres, 1..1000000")->required();
-    random->add_option("--seed", options->seed, "Seed of the random numbers")->capture_default_str();
-    random->callback([options] { write_whole_file(options->output, write_nff(generate_random(options->count, options->seed))); });
+    CLI::App* random =
+        add_kind(*command, *options, "random", "N spheres anywhere in a cube, the same for the same seed");
+    random->add_option("N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
+    random->add_option("--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
+        ->type_name("N")
+        ->capture_default_str();
+    random->callback(
+        [options] { write_whole_file(options->output, write_nff(generate_random(options->count, options->seed))); });
 
-    CLI::App* centre = add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
+    CLI::App* centre =
+        add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
     centre->callback([options] { write_whole_file(options->output, write_nff(generate_centre())); });
+    for (CLI::App* kind : {balls, uniform, random, centre}) refuse_odd_values(*kind);
 }
 
 }  // namespace raya

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 
 #include "error.hpp"
+#include "ring/mapping.hpp"
+#include "scene/generate.hpp"
 
 namespace raya {
 
-std::vector<std::uint32_t> parse_sizes(const std::string& option, const std::string& text, std::size_t count) {
+std::vector<std::uint32_t> parse_sizes(const std::string& text) {
     constexpr std::uint32_t kMost = 1'000'000;
     std::vector<std::uint32_t> sizes;
     const char* at = text.data();
@@ -16,22 +19,40 @@ std::vector<std::uint32_t> parse_sizes(const std::string& option, const std::str
     for (;;) {
         std::uint32_t size = 0;
         const auto [next, error] = std::from_chars(at, end, size);
-        if (error != std::errc{} || size < 1 || size > kMost) break;
+        if (error != std::errc{} || size < 1 || size > kMost) return {};
         sizes.push_back(size);
-        at = next;
-        if (at == end || *at != 'x') break;
-        ++at;
+        if (next == end) return sizes;
+        if (*next != 'x') return {};
+        at = next + 1;
     }
-    if (at != end || sizes.size() != count) {
-        throw UserError(fmt::format("{} {}: must be {} whole numbers from 1 to {} with x between them", option, text, count, kMost));
-    }
-    return sizes;
 }
 
 std::vector<std::uint32_t> parse_image_size(const std::string& text) {
-    if (text.find('x') != std::string::npos) return parse_sizes("--size", text, 2);
-    const std::uint32_t side = parse_sizes("--size", text, 1)[0];
-    return {side, side};
+    std::vector<std::uint32_t> sides = parse_sizes(text);
+    if (sides.size() == 1) sides.push_back(sides[0]);
+    if (sides.size() != 2)
+        throw UserError(fmt::format("--size {}: must be N or WxH, 1..{} pixels a side", text, kLargestSide));
+    return sides;
+}
+
+std::vector<std::uint32_t> parse_voxels(const std::string& text) {
+    std::vector<std::uint32_t> sides = parse_sizes(text);
+    if (sides.size() != 3)
+        throw UserError(fmt::format("--voxels {}: must be XxYxZ, 1..{} each", text, kMostVoxelsAlongAxis));
+    return sides;
+}
+
+void refuse_odd_values(CLI::App& command) {
+    for (CLI::Option* option : command.get_options()) {
+        const std::string type = option->get_type_name();
+        if (option->get_type_size() == 0) continue;  // a flag
+        const bool whole = type == "N" || type == "P" || type == "p" || type == "V" || type == "L";
+        option->check([whole](const std::string& value) -> std::string {
+            if (value.empty()) return "must not be empty";
+            const bool digits = value.find_first_not_of("0123456789") == std::string::npos;
+            return whole && !digits ? "'" + value + "' is not a whole number" : "";
+        });
+    }
 }
 
 }  // namespace raya

@@ -4,12 +4,24 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace raya {
 
-/// "512x256" as {512, 256}: `count` whole numbers from 1 to 10^6 with x between them. UserError names the option.
-std::vector<std::uint32_t> parse_sizes(const std::string& option, const std::string& text, std::size_t count);
+/// "512x256" as {512, 256}: whole numbers from 1 to 10^6 with x between them; empty for anything else.
+std::vector<std::uint32_t> parse_sizes(const std::string& text);
 
-/// An image size: "512" (square) or "512x256".
+/// An image size: "512" (square) or "512x256". UserError names the option and its legal values; the range is checked
+/// later.
 std::vector<std::uint32_t> parse_image_size(const std::string& text);
+
+/// Voxels along x, y and z: "4x4x4". UserError as above.
+std::vector<std::uint32_t> parse_voxels(const std::string& text);
+
+/// Makes every option of `command` refuse an empty value, and those that take whole numbers anything but digits: the
+/// parser would take the first as not given and wrap negative numbers round.
+void refuse_odd_values(CLI::App& command);
 
 }  // namespace raya

@@ -2,11 +2,15 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/commands.hpp"
+#include "cli/parse.hpp"
 #include "cli/render_options.hpp"
+#include "error.hpp"
 #include "image/image_io.hpp"
 #include "report/progress.hpp"
 #include "report/render_report.hpp"
@@ -22,27 +26,38 @@ struct RenderCommand {
     bool profile = false, quiet = false;
 };
 
+// A file that is named twice would be written over by the other one.
+void check_distinct(const std::vector<std::string>& files) {
+    std::set<std::filesystem::path> seen;
+    for (const std::string& file : files)
+        if (!file.empty() && !file.starts_with("/dev/") && !seen.insert(std::filesystem::weakly_canonical(file)).second)
+            throw UserError(
+                fmt::format("{}: named twice; scene, image, cost image and report must be different files", file));
+}
+
 void check_targets(const RenderCommand& command) {
+    check_distinct({command.render.scene, command.image, command.cost, command.report});
     check_writable_target(command.image, kImageExtensions);
     if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
     if (!command.report.empty()) check_writable(command.report);
 }
 
-RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device, const RingResult& result) {
+RingResult render_with_progress(RingRenderer& renderer, bool wanted) {
+    ProgressBar bar(wanted);
+    return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
+}
+
+RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device,
+                         const RingResult& result) {
     RenderReport report;
     report.scene = command.render.scene;
     report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
-    report.machine = {settings.machine.name,
-                      settings.machine.topology,
-                      command.render.mapping,
-                      command.render.fold,
-                      settings.machine.format,
-                      settings.mapping.pes,
-                      settings.mapping.offset,
-                      settings.bounces,
-                      settings.machine.pe_memory_bytes.value_or(0),
+    report.machine = {settings.machine.name,   settings.machine.topology, command.render.mapping,
+                      command.render.fold,     settings.machine.format,   settings.mapping.pes,
+                      settings.mapping.offset, settings.bounces,          settings.machine.pe_memory_bytes.value_or(0),
                       result.pe_memory.bytes()};
-    report.device = {device.name, device.platform, device.version, result.build_options, result.lanes, result.group_size};
+    report.device = {device.name,          device.platform, device.version,
+                     result.build_options, result.lanes,    result.group_size};
     report.events = result.events;
     report.load = result.load;
     report.communication = result.communication;
@@ -65,8 +80,7 @@ void render(const RenderCommand& command) {
     const RingSettings settings = ring_settings(command.render, scene);
     Session session(choose_device(command.render.device));
     RingRenderer renderer(session, scene, settings);
-    ProgressBar bar(!command.quiet);
-    const RingResult result = renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
+    const RingResult result = render_with_progress(renderer, !command.quiet);
 
     const RenderReport report = make_report(command, settings, session.device(), result);
     const ImageAttributes attributes = image_attributes(report, scene.name);
@@ -82,13 +96,20 @@ void render(const RenderCommand& command) {
 void add_render_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on the ring machine");
     const auto options = std::make_shared<RenderCommand>();
-    command->add_option("SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")->required()->type_name("SCENE.nff");
-    command->add_option("-o,--output", options->image, "Image to write: .png (sRGB), .exr or .pfm (linear)")->required()->type_name("IMAGE");
+    command->add_option("SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
+        ->required()
+        ->type_name("SCENE.nff");
+    command->add_option("-o,--output", options->image, "Image to write: .png (sRGB), .exr or .pfm (linear)")
+        ->required()
+        ->type_name("IMAGE");
     add_render_options(*command, options->render);
-    command->add_option("--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")->type_name("FILE.exr");
-    command->add_option("--report", options->report, "Write everything that was counted and measured")->type_name("FILE.json");
+    command->add_option("--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")
+        ->type_name("FILE.exr");
+    command->add_option("--report", options->report, "Write everything that was counted and measured")
+        ->type_name("FILE.json");
     command->add_flag("--profile", options->profile, "Print launches and times of every labelled command");
     command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
+    refuse_odd_values(*command);
     command->callback([options] { render(*options); });
 }
 

@@ -11,27 +11,46 @@
 namespace raya {
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
-    command.add_option("--machine", o.machine,
-                       "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit")
+    command
+        .add_option("--machine", o.machine,
+                    "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit")
         ->type_name("NAME")
         ->capture_default_str();
-    command.add_option("--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")->type_name("N|WxH");
+    command.add_option("--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
+        ->type_name("N|WxH");
     command.add_option("--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's")->type_name("P");
-    command.add_option("--offset", o.offset, "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W)")->type_name("p");
-    command.add_option("--mapping", o.mapping, "cyclic, or column: the column split, offset 0")->type_name("NAME")->capture_default_str();
+    command
+        .add_option("--offset", o.offset, "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W)")
+        ->type_name("p");
+    command.add_option("--mapping", o.mapping, "cyclic, or column: the column split, offset 0")
+        ->type_name("NAME")
+        ->capture_default_str();
     command.add_option("--fold", o.fold, "Slots to PEs where P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
         ->capture_default_str();
     command.add_option("--format", o.format, "Number format of the kernels: fp32")->capture_default_str();
-    command.add_option("--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")->type_name("N");
-    command.add_option("--sampling", o.sampling, "Primary rays through pixel centres, or through pixel corners as SPD counts them")
+    command.add_option("--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
+        ->type_name("N");
+    command
+        .add_option("--sampling", o.sampling,
+                    "Primary rays through pixel centres, or through pixel corners as SPD counts them")
         ->type_name("centres|corners")
         ->capture_default_str();
-    command.add_option("--device", o.device, "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first GPU, else the first CPU")
+    command
+        .add_option("--device", o.device,
+                    "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
+                    "GPU, else the first CPU")
         ->type_name("NAME");
-    command.add_option("--lanes", o.lanes, "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: the device's float vectors")->type_name("V");
-    command.add_option("--group", o.group, "Work-items L in the work-group that stands for a PE, 1..64; default: 1 on a CPU, 32 elsewhere")->type_name("L");
-    command.add_option("--kernel-dir", o.kernel_dir, "Read the kernels from this folder, while developing them")->type_name("DIR");
+    command
+        .add_option("--lanes", o.lanes,
+                    "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: the device's float vectors")
+        ->type_name("V");
+    command
+        .add_option("--group", o.group,
+                    "Work-items L in the work-group that stands for a PE, 1..64; default: 1 on a CPU, 32 elsewhere")
+        ->type_name("L");
+    command.add_option("--kernel-dir", o.kernel_dir, "Read the kernels from this folder, while developing them")
+        ->type_name("DIR");
 }
 
 RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
@@ -40,10 +59,12 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     if (o.format != "fp32") throw UserError(fmt::format("--format {}: must be fp32", o.format));
     if (o.sampling != "centres" && o.sampling != "corners")
         throw UserError(fmt::format("--sampling {}: must be centres or corners", o.sampling));
-    std::vector<std::uint32_t> size = {static_cast<std::uint32_t>(scene.view.width), static_cast<std::uint32_t>(scene.view.height)};
+    std::vector<std::uint32_t> size = {static_cast<std::uint32_t>(scene.view.width),
+                                       static_cast<std::uint32_t>(scene.view.height)};
     if (!o.size.empty()) size = parse_image_size(o.size);
     const std::uint32_t pes = o.pes.value_or(settings.machine.pes.value_or(size[0]));
-    settings.mapping = make_mapping(o.mapping, size[0], size[1], pes, o.offset.value_or(settings.machine.offset % size[0]), o.fold);
+    settings.mapping =
+        make_mapping(o.mapping, size[0], size[1], pes, o.offset.value_or(settings.machine.offset % size[0]), o.fold);
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.sampling = o.sampling == "corners" ? Sampling::kCorners : Sampling::kCentres;
     if (o.lanes == 0u || o.group == 0u) throw UserError("--lanes and --group must be 1 or more");

@@ -16,11 +16,11 @@ using EventCounts = std::array<std::uint64_t, RAYA_EVENTS>;
 /// An array of PEs as a description. Empty optionals follow the image or have no limit.
 struct Machine {
     std::string name;
-    std::string title;                                // for messages: "the SPA"
-    std::string topology;                             // how the PEs are joined
-    std::optional<std::uint32_t> pes;                 // empty: as many as the image has columns
-    std::uint32_t offset = 0;                         // p of the cyclic mapping
-    std::optional<std::uint32_t> pe_memory_bytes;     // empty: no limit
+    std::string title;                             // for messages: "the SPA"
+    std::string topology;                          // how the PEs are joined
+    std::optional<std::uint32_t> pes;              // empty: as many as the image has columns
+    std::uint32_t offset = 0;                      // p of the cyclic mapping
+    std::optional<std::uint32_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
     std::string format = "fp32";
 };
@@ -31,9 +31,9 @@ const std::vector<Machine>& machines();
 /// The machine of that name; UserError lists those there are.
 const Machine& machine_named(const std::string& name);
 
-/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h): the arithmetic operations of the kernels'
-/// formulas, a multiply-accumulate counted once as on a DSP of one multiply-accumulate a cycle, a division or square root as 8.
-/// A plain weighted sum: no memory access, loop or call is in it.
+/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h): the arithmetic operations of the
+/// kernels' formulas, a multiply-accumulate counted once as on a DSP of one multiply-accumulate a cycle, a division or
+/// square root as 8. A plain weighted sum: no memory access, loop or call is in it.
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events();
 
 }  // namespace raya

@@ -22,8 +22,8 @@ void ProgressBar::update(double done) {
     if (!active_ || elapsed < kQuietSeconds) return;
     const int filled = std::clamp(static_cast<int>(done * kWidth), 0, kWidth);
     const double left = done > 0 ? elapsed * (1 - done) / done : 0;
-    fmt::print(stderr, "\r[{}{}] {:3.0f} %  {:.0f} s left\033[K", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-               100 * done, left);
+    fmt::print(stderr, "\r[{}{}] {:3.0f} %  {:.0f} s left\033[K", std::string(filled, '#'),
+               std::string(kWidth - filled, '.'), 100 * done, left);
     std::fflush(stderr);
     drawn_ = true;
 }

@@ -49,7 +49,8 @@ Json to_json(const RenderReport& r) {
     const Communication& c = r.communication;
     Json json;
     json["scene"] = r.scene;
-    json["image"] = {{"width", r.image.width}, {"height", r.image.height}, {"file", r.image.file}, {"hash", r.image.hash}};
+    json["image"] = {
+        {"width", r.image.width}, {"height", r.image.height}, {"file", r.image.file}, {"hash", r.image.hash}};
     json["machine"] = {{"name", r.machine.name},
                        {"topology", r.machine.topology},
                        {"pes", r.machine.pes},
@@ -60,20 +61,21 @@ Json to_json(const RenderReport& r) {
                        {"bounces", r.machine.bounces},
                        {"pe_memory_bytes", r.machine.pe_memory_bytes ? Json(r.machine.pe_memory_bytes) : Json()},
                        {"pe_memory_used_bytes", r.machine.pe_memory_used_bytes}};
-    json["device"] = {{"name", r.device.name},       {"platform", r.device.platform},
-                      {"version", r.device.version}, {"lanes", r.device.lanes},
-                      {"group_size", r.device.group_size}, {"build_options", r.device.build_options}};
-    json["rays"] = {{"primary", e[RAYA_PRIMARY]},     {"primary_hits", e[RAYA_PRIMARY_HITS]}, {"reflected", e[RAYA_REFLECTED]},
-                    {"refracted", e[RAYA_REFRACTED]}, {"shadow", e[RAYA_SHADOW]},             {"shadow_hits", e[RAYA_SHADOW_HITS]}};
+    json["device"] = {
+        {"name", r.device.name},   {"platform", r.device.platform},     {"version", r.device.version},
+        {"lanes", r.device.lanes}, {"group_size", r.device.group_size}, {"build_options", r.device.build_options}};
+    json["rays"] = {{"primary", e[RAYA_PRIMARY]},     {"primary_hits", e[RAYA_PRIMARY_HITS]},
+                    {"reflected", e[RAYA_REFLECTED]}, {"refracted", e[RAYA_REFRACTED]},
+                    {"shadow", e[RAYA_SHADOW]},       {"shadow_hits", e[RAYA_SHADOW_HITS]}};
     json["tests"] = {{"sphere", e[RAYA_SPHERE_TESTS]},
                      {"plane", e[RAYA_PLANE_TESTS]},
                      {"polygon", e[RAYA_POLYGON_TESTS]},
                      {"cone", e[RAYA_CONE_TESTS]}};
     json["shading"] = {{"hits", e[RAYA_SHADED]}, {"lit", e[RAYA_LIT]}, {"highlights", e[RAYA_HIGHLIGHTS]}};
     json["load"] = load_json(r.load);
-    json["communication"] = {{"broadcasts", c.broadcasts},         {"broadcast_words", c.broadcast_words},
-                             {"rotations", c.rotations},           {"rotation_words", c.rotation_words},
-                             {"gathers", c.gathers},               {"gather_words", c.gather_words}};
+    json["communication"] = {{"broadcasts", c.broadcasts}, {"broadcast_words", c.broadcast_words},
+                             {"rotations", c.rotations},   {"rotation_words", c.rotation_words},
+                             {"gathers", c.gathers},       {"gather_words", c.gather_words}};
     json["measured"] = measured_json(r);
     return json;
 }
@@ -81,17 +83,19 @@ Json to_json(const RenderReport& r) {
 std::string human_summary(const RenderReport& r) {
     const EventCounts& e = r.events;
     const std::uint64_t rays = ray_count(e);
-    std::string text = fmt::format("{}: {} x {} pixels on {} ({} PEs, {} mapping, offset {}), {}, {} bounces\n", r.scene, r.image.width,
-                                   r.image.height, r.machine.name, r.machine.pes, r.machine.mapping, r.machine.offset,
-                                   r.machine.format, r.machine.bounces);
+    std::string text = fmt::format("{}: {} x {} pixels on {} ({} PEs, {} mapping, offset {}), {}, {} bounces\n",
+                                   r.scene, r.image.width, r.image.height, r.machine.name, r.machine.pes,
+                                   r.machine.mapping, r.machine.offset, r.machine.format, r.machine.bounces);
     text += fmt::format("rays    {} = {} primary + {} reflected + {} refracted + {} shadow\n", rays, e[RAYA_PRIMARY],
                         e[RAYA_REFLECTED], e[RAYA_REFRACTED], e[RAYA_SHADOW]);
-    text += fmt::format("load    u = {:.3f}, speed-up {:.1f} of {}, efficiency {:.1f} % (modelled cycles)\n", r.load.imbalance,
-                        r.load.speedup, r.machine.pes, 100 * r.load.efficiency);
-    text += fmt::format("memory  {:.1f} KB in each PE{}\n", static_cast<double>(r.machine.pe_memory_used_bytes) / 1024,
-                        r.machine.pe_memory_bytes ? fmt::format(" of {} KB", r.machine.pe_memory_bytes / 1024) : ", no limit");
-    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {:.1f} Mrays/s on {} ({} lanes)\n", r.measured.build_s,
-                        r.measured.render_s, static_cast<double>(rays) / r.measured.render_s * 1e-6, r.device.name, r.device.lanes);
+    text += fmt::format("load    u = {:.3f}, speed-up {:.1f} of {}, efficiency {:.1f} % (modelled cycles)\n",
+                        r.load.imbalance, r.load.speedup, r.machine.pes, 100 * r.load.efficiency);
+    text += fmt::format(
+        "memory  {:.1f} KB in each PE{}\n", static_cast<double>(r.machine.pe_memory_used_bytes) / 1024,
+        r.machine.pe_memory_bytes ? fmt::format(" of {} KB", r.machine.pe_memory_bytes / 1024) : ", no limit");
+    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {:.1f} Mrays/s on {} ({} lanes)\n",
+                        r.measured.build_s, r.measured.render_s, static_cast<double>(rays) / r.measured.render_s * 1e-6,
+                        r.device.name, r.device.lanes);
     text += fmt::format("image   {} ({})\n", r.image.file, r.image.hash);
     return text;
 }
@@ -99,12 +103,14 @@ std::string human_summary(const RenderReport& r) {
 std::string profile_table(const std::vector<LabelSummary>& commands) {
     double all = 0;
     for (const LabelSummary& c : commands) all += static_cast<double>(c.total_ns);
-    std::vector<std::vector<std::string>> rows = {{"label", "kind", "launches", "total ms", "share %", "min ms", "mean ms", "max ms"}};
+    std::vector<std::vector<std::string>> rows = {
+        {"label", "kind", "launches", "total ms", "share %", "min ms", "mean ms", "max ms"}};
     for (const LabelSummary& c : commands) {
         const auto total = static_cast<double>(c.total_ns);
         rows.push_back({c.label, c.kind, std::to_string(c.launches), fmt::format("{:.3f}", ms(total)),
-                        fmt::format("{:.1f}", all > 0 ? 100 * total / all : 0), fmt::format("{:.3f}", ms(static_cast<double>(c.min_ns))),
-                        fmt::format("{:.3f}", ms(c.mean_ns)), fmt::format("{:.3f}", ms(static_cast<double>(c.max_ns)))});
+                        fmt::format("{:.1f}", all > 0 ? 100 * total / all : 0),
+                        fmt::format("{:.3f}", ms(static_cast<double>(c.min_ns))), fmt::format("{:.3f}", ms(c.mean_ns)),
+                        fmt::format("{:.3f}", ms(static_cast<double>(c.max_ns)))});
     }
     return text_table(rows);
 }

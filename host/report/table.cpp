@@ -8,7 +8,9 @@
 namespace raya {
 namespace {
 
-bool is_number(const std::string& cell) { return !cell.empty() && std::isdigit(static_cast<unsigned char>(cell.front())); }
+bool is_number(const std::string& cell) {
+    return !cell.empty() && std::isdigit(static_cast<unsigned char>(cell.front()));
+}
 
 // A column of numbers, header aside, stands to the right.
 bool stands_right(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
@@ -29,7 +31,8 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
         std::string line;
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (i > 0) line += "  ";
-            line += stands_right(rows, i) ? fmt::format("{:>{}}", row[i], widths[i]) : fmt::format("{:<{}}", row[i], widths[i]);
+            line += stands_right(rows, i) ? fmt::format("{:>{}}", row[i], widths[i])
+                                          : fmt::format("{:<{}}", row[i], widths[i]);
         }
         line.erase(line.find_last_not_of(' ') + 1);
         text += line + '\n';

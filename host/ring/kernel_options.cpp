@@ -14,17 +14,18 @@ constexpr std::array<std::uint32_t, 4> kLanes = {1, 4, 8, 16};
 constexpr std::uint32_t kMostGroup = 64;
 constexpr std::uint32_t kMostBounces = 31;  // waiting rays are bits of a word
 
-void check(const KernelOptions& options, const DeviceInfo& device) {
+}  // namespace
+
+void check_kernel_options(const KernelOptions& options, const DeviceInfo& device) {
     if (std::find(kLanes.begin(), kLanes.end(), options.lanes) == kLanes.end())
         throw UserError(fmt::format("--lanes {}: must be 1, 4, 8 or 16", options.lanes));
     const auto most = std::min<std::size_t>(kMostGroup, device.max_group_size);
     if (options.group_size < 1 || options.group_size > most)
-        throw UserError(fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, most, device.name));
+        throw UserError(
+            fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, most, device.name));
     if (options.bounces > kMostBounces)
         throw UserError(fmt::format("--bounces {}: must be 0..{}", options.bounces, kMostBounces));
 }
-
-}  // namespace
 
 std::uint32_t default_lanes(const DeviceInfo& device) {
     if (device.type != "cpu") return 1;
@@ -39,7 +40,7 @@ std::uint32_t default_group_size(const DeviceInfo& device) {
 }
 
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device) {
-    check(options, device);
+    check_kernel_options(options, device);
     std::vector<std::string> all = {
         "-cl-std=CL1.2",
         fmt::format("-DRAYA_LANES={}", options.lanes),

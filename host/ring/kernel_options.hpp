@@ -23,8 +23,12 @@ std::uint32_t default_lanes(const DeviceInfo& device);
 /// L: 1 on a CPU, where lanes do its work, 32 elsewhere.
 std::uint32_t default_group_size(const DeviceInfo& device);
 
-/// The build options, correctly rounded division and square root among them where the device offers a choice. Throws UserError for
-/// lanes other than 1, 4, 8, 16, a group size outside 1..64 or above the device's limit, more than 31 bounces.
+/// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..64 or above the device's limit, more than
+/// 31 bounces.
+void check_kernel_options(const KernelOptions& options, const DeviceInfo& device);
+
+/// The build options, correctly rounded division and square root among them where the device offers a choice. Checks
+/// `options` as above.
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device);
 
 }  // namespace raya

@@ -25,7 +25,8 @@ raya_mapping make_mapping(const std::string& name, std::uint32_t width, std::uin
     if (pes < 1 || pes > width * height)
         throw UserError(fmt::format("--pes {}: must be 1..{}, a PE for each pixel at most", pes, width * height));
     if (name == "column") offset = 0;
-    if (offset >= width) throw UserError(fmt::format("--offset {}: must be 0..{}, less than the image's width", offset, width - 1));
+    if (offset >= width)
+        throw UserError(fmt::format("--offset {}: must be 0..{}, less than the image's width", offset, width - 1));
     return {width, height, pes, offset, fold == "block" ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC};
 }
 

@@ -16,9 +16,10 @@ struct PeMemory {
     std::uint64_t bytes() const { return 4 * (job_words + tree_words + 3ull * block_pixels); }
 };
 
-/// Gives each PE room for its whole share where that fits; else for as many pixels as fit, which are then gathered block by block.
-/// The paper's run on one PE (256 x 256 pixels, 32 KB) needs that. UserError, with both figures and the remedy, if not even one pixel fits.
-PeMemory plan_pe_memory(const Machine& machine, const std::string& scene, std::uint64_t job_words, std::uint32_t bounces,
-                        std::uint32_t share);
+/// Gives each PE room for its whole share where that fits; else for as many pixels as fit, which are then gathered
+/// block by block. The paper's run on one PE (256 x 256 pixels, 32 KB) needs that. UserError, with both figures and the
+/// remedy, if not even one pixel fits.
+PeMemory plan_pe_memory(const Machine& machine, const std::string& scene, std::uint64_t job_words,
+                        std::uint32_t bounces, std::uint32_t share);
 
 }  // namespace raya

@@ -18,9 +18,22 @@ JobSettings job_settings(const RingSettings& settings) {
     return {settings.mapping, settings.sampling, settings.bounces, cycles_of_events()};
 }
 
-// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress bar moves, Ctrl-C is
-// heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few wait for the last.
-std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share) {
+// The settings with lanes and group size chosen, refused before anything is packed or taken if the kernels cannot be
+// built with them.
+RingSettings checked(RingSettings settings, const DeviceInfo& device) {
+    if (!settings.kernels.lanes) settings.kernels.lanes = default_lanes(device);
+    if (!settings.kernels.group_size) settings.kernels.group_size = default_group_size(device);
+    check_kernel_options(
+        {.lanes = settings.kernels.lanes, .group_size = settings.kernels.group_size, .bounces = settings.bounces},
+        device);
+    return settings;
+}
+
+// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress
+// bar moves, Ctrl-C is heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few wait
+// for the last.
+std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes,
+                           std::uint32_t share) {
     if (settings.pixels_per_launch) return settings.pixels_per_launch;
     constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
     constexpr double kRaysPerPixel = 6;      // of the project's scenes
@@ -33,12 +46,12 @@ std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, st
 
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
-      settings_(settings),
+      settings_(checked(settings, session.device())),
       job_(pack_job(scene, job_settings(settings))),
       share_(largest_share(settings.mapping)),
       memory_(plan_pe_memory(settings.machine, scene.name, job_.words.size(), settings.bounces, share_)),
-      lanes_(settings.kernels.lanes ? settings.kernels.lanes : default_lanes(session.device())),
-      group_(settings.kernels.group_size ? settings.kernels.group_size : default_group_size(session.device())),
+      lanes_(settings_.kernels.lanes),
+      group_(settings_.kernels.group_size),
       slice_(slice_pixels(settings, scene.object_count(), lanes_ * group_, memory_.block_pixels)),
       words_local_(4 * job_.words.size() + sizeof(cl_uint) <= session.device().local_memory_bytes),
       bus_(session, communication_),
@@ -50,17 +63,20 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 }
 
 void RingRenderer::build() {
-    const KernelOptions options{lanes_,       group_, settings_.bounces, words_local_, job_.has_polygons, job_.has_patches,
-                                job_.has_cones};
+    const KernelOptions options{lanes_,           group_,        settings_.bounces, words_local_, job_.has_polygons,
+                                job_.has_patches, job_.has_cones};
     std::vector<std::string> all = build_options(options, session_.device());
     all.insert(all.end(), settings_.kernels.more_options.begin(), settings_.kernels.more_options.end());
     const Clock::time_point start = Clock::now();
-    const Program program = session_.build("ring/trace.cl", kernel_source("ring/trace.cl", settings_.kernels.kernel_dir), all);
+    const Program program =
+        session_.build("ring/trace.cl", kernel_source("ring/trace.cl", settings_.kernels.kernel_dir), all);
     trace_ = std::make_unique<TraceKernel>(
-        program.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, LocalMemory<std::uint32_t>,
-                       Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>("trace"));
+        program.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
+                       LocalMemory<std::uint32_t>, Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>(
+            "trace"));
     build_options_ = program.options();
     // PoCL compiles a kernel's body at its first launch: launch it once for no pixels, so that this counts as building.
+    session_.write("clear counters", events_, std::vector<std::uint64_t>(events_.size()));
     bus_.broadcast(broadcast_, job_.words);
     launch_trace("warm-up", 0, 0, 0);
     session_.finish();
@@ -69,8 +85,8 @@ void RingRenderer::build() {
 
 void RingRenderer::launch_trace(const std::string& label, std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
     const LocalMemory<std::uint32_t> memory{words_local_ ? job_.words.size() : 1};
-    session_.launch(label, *trace_, settings_.mapping.pes, group_, broadcast_, static_cast<cl_uint>(job_.words.size()), block,
-                    memory_.block_pixels, begin, end, memory, pixels_, cycles_, events_);
+    session_.launch(label, *trace_, settings_.mapping.pes, group_, broadcast_, static_cast<cl_uint>(job_.words.size()),
+                    block, memory_.block_pixels, begin, end, memory, pixels_, cycles_, events_);
 }
 
 RingResult RingRenderer::render(const ProgressCallback& progress) {
@@ -95,7 +111,7 @@ void RingRenderer::prepare(RingResult& result) {
     const std::size_t pixels = std::size_t{m.width} * m.height;
     result.image = {static_cast<int>(m.width), static_cast<int>(m.height), std::vector<float>(3 * pixels)};
     result.cost = {static_cast<int>(m.width), static_cast<int>(m.height), std::vector<float>(pixels)};
-    session_.fill("clear counters", events_, 0);
+    session_.write("clear counters", events_, std::vector<std::uint64_t>(events_.size()));
 }
 
 void RingRenderer::trace(std::uint32_t block, const ProgressCallback& progress) {
@@ -127,7 +143,8 @@ void RingRenderer::gather(std::uint32_t block, RingResult& result) {
         for (std::uint32_t k = block; k < end; ++k) {
             const raya_pixel at = raya_pixel_of(m, share, k);
             const std::size_t to = std::size_t{at.row} * m.width + at.column, from = pe * capacity + (k - block);
-            std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3, result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
+            std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
+                        result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
             result.cost.values[to] = static_cast<float>(cycles[from]);
         }
     }

@@ -21,9 +21,9 @@ namespace raya {
 
 /// How the kernels are built for a device. 0: chosen from the device.
 struct KernelChoice {
-    std::uint32_t lanes = 0;               // V: 1, 4, 8 or 16
-    std::uint32_t group_size = 0;          // L: 1..64 work-items
-    std::filesystem::path kernel_dir;      // kernels from disk in place of the program's own
+    std::uint32_t lanes = 0;                // V: 1, 4, 8 or 16
+    std::uint32_t group_size = 0;           // L: 1..64 work-items
+    std::filesystem::path kernel_dir;       // kernels from disk in place of the program's own
     std::vector<std::string> more_options;  // appended to the build options
 };
 
@@ -33,7 +33,8 @@ struct RingSettings {
     std::uint32_t bounces = 8;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
-    std::uint32_t pixels_per_launch = 0;  // of each PE; 0: as many as take about a second, so that progress can be shown
+    std::uint32_t pixels_per_launch =
+        0;  // of each PE; 0: as many as take about a second, so that progress can be shown
 };
 
 struct RingResult {
@@ -62,8 +63,9 @@ class RingRenderer {
     RingResult render(const ProgressCallback& progress = {});
 
   private:
-    using TraceKernel = Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, LocalMemory<std::uint32_t>,
-                               Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
+    using TraceKernel =
+        Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, LocalMemory<std::uint32_t>,
+               Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
 
     void build();
     void launch_trace(const std::string& label, std::uint32_t block, std::uint32_t begin, std::uint32_t end);

@@ -67,7 +67,8 @@ std::vector<Face> faces_of(const Scene& scene) {
             for (int i = 0; i < static_cast<int>(p.vertices.size()); ++i) whole.corners.push_back(i);
             faces.push_back(std::move(whole));
         } else {
-            for (const auto& t : triangulate(p.vertices, newell_normal(p.vertices))) faces.push_back({&p, {t[0], t[1], t[2]}});
+            for (const auto& t : triangulate(p.vertices, newell_normal(p.vertices)))
+                faces.push_back({&p, {t[0], t[1], t[2]}});
         }
     }
     return faces;
@@ -121,7 +122,8 @@ void pack_faces(Words& words, const std::vector<Face>& faces, const Words& surfa
         pack_edges(words, faces[i], axis);
         put_index(record, polygon.normals.empty() ? 0 : words.size());
         if (!polygon.normals.empty()) pack_patch(words, faces[i], axis);
-        std::copy(record.begin(), record.end(), words.begin() + static_cast<std::ptrdiff_t>(polygons_at + i * RAYA_POLYGON_WORDS));
+        std::copy(record.begin(), record.end(),
+                  words.begin() + static_cast<std::ptrdiff_t>(polygons_at + i * RAYA_POLYGON_WORDS));
     }
 }
 
@@ -189,10 +191,12 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     job.polygons_at = here();
     pack_faces(words, faces, surface_at);
     if (words.size() > kMostWords)
-        throw UserError(fmt::format("{}: packs to {} words, more than 32-bit word numbers reach", scene.name, words.size()));
+        throw UserError(
+            fmt::format("{}: packs to {} words, more than 32-bit word numbers reach", scene.name, words.size()));
 
     packed.has_polygons = !faces.empty();
-    packed.has_patches = std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });
+    packed.has_patches =
+        std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });
     packed.has_cones = !scene.cones.empty();
     std::memcpy(words.data(), &job, sizeof job);
     return packed;

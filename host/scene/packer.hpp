@@ -25,8 +25,8 @@ struct PackedJob {
     bool has_polygons = false, has_patches = false, has_cones = false;
 };
 
-/// Numbers are rounded from double to fp32 once each. Patches of more than three vertices are cut into triangles, each of which counts as
-/// a polygon of its own. Throws UserError for a scene of more than 2^30 words.
+/// Numbers are rounded from double to fp32 once each. Patches of more than three vertices are cut into triangles, each
+/// of which counts as a polygon of its own. Throws UserError for a scene of more than 2^30 words.
 PackedJob pack_job(const Scene& scene, const JobSettings& settings);
 
 }  // namespace raya

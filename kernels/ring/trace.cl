@@ -30,6 +30,7 @@ typedef struct {
     __global ulong* cycles;    // of the PE's block, modelled cycles of a pixel
     ulong totals[RAYA_EVENTS]; // events of all pixels of the work-item
     lanes_index pixel;         // number of the lane's pixel in the share
+    int drained;               // the PE has no more pixels: asking again would only make `next` grow
 } pixel_store;
 
 static inline void store_pixel(words scene, tree* t, pixel_store* store, lanes_vec sum, uint lane) {
@@ -71,7 +72,8 @@ static inline void take_pixels(words scene, tree* t, pixel_store* store, volatil
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!idle.lane[lane]) continue;
         if (store->pixel.lane[lane] != RAYA_NO_PIXEL) store_pixel(scene, t, store, sum, lane);
-        const uint k = *next < end ? atomic_inc(next) : end;
+        const uint k = store->drained ? end : atomic_inc(next);
+        store->drained = k >= end;
         store->pixel.lane[lane] = k < end ? k : RAYA_NO_PIXEL;
         if (k >= end) continue;
         const raya_pixel pixel = raya_pixel_of(store->mapping, store->share, k);
@@ -126,6 +128,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.pixels = pixels + (size_t)pe * capacity * 3;
     store.cycles = cycles + (size_t)pe * capacity;
     store.pixel.all = (index)(RAYA_NO_PIXEL);
+    store.drained = 0;
     for (uint e = 0; e < RAYA_EVENTS; ++e) store.totals[e] = 0;
     trace_share(scene, &store, &next, min(end, raya_share_size(store.share)));
     __global ulong* mine = events + ((size_t)pe * RAYA_GROUP + item) * RAYA_EVENTS;

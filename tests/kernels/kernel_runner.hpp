@@ -36,7 +36,8 @@ inline constexpr std::size_t kMostLanes = 16;
 
 class KernelRunner {
   public:
-    /// Builds a file of tests/kernels/. Throws std::runtime_error where it is missing, DeviceError where it does not build.
+    /// Builds a file of tests/kernels/. Throws std::runtime_error where it is missing, DeviceError where it does not
+    /// build.
     KernelRunner(const std::string& file, const Variant& variant)
         : lanes_(variant.lanes), session_(choose_device("")), program_(build(file, variant)) {}
 

@@ -1,4 +1,5 @@
-// Renders on the ring machine in a line, for tests. A device is required: without one these tests fail, they are not skipped.
+// Renders on the ring machine in a line, for tests. A device is required: without one these tests fail, they are not
+// skipped.
 #pragma once
 #include <string>
 #include <vector>
@@ -39,7 +40,8 @@ inline Scene project_scene(const std::string& name) { return read_nff(RAYA_SOURC
 
 /// The scenes of scenes/, which together hold every kind of object and surface.
 inline const std::vector<std::string>& project_scenes() {
-    static const std::vector<std::string> names = {"centre", "spheres", "mirrors", "glass", "polygons", "cones", "planes"};
+    static const std::vector<std::string> names = {"centre",   "spheres", "mirrors", "glass",
+                                                   "polygons", "cones",   "planes"};
     return names;
 }
 

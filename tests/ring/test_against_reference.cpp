@@ -5,6 +5,7 @@
 
 #include "reference/reference.hpp"
 #include "ring/render_scene.hpp"
+#include "scene/generate.hpp"
 
 namespace raya {
 
@@ -18,8 +19,10 @@ TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
         const reference::Options options{.width = kSide, .height = kSide};
         const reference::Image expected = reference::render(scene, options);
         const reference::Difference d = reference::compare(expected, result.image.rgb, scene, options);
-        fmt::print("{:8} PSNR {:5.1f} dB, largest {:.4f}, {} pixels off by more than 2/255, of which {} graze an edge ({:.2f} %)\n", name,
-                   d.psnr_db, d.largest, d.over, d.excused, 100.0 * d.excused / (kSide * kSide));
+        fmt::print(
+            "{:8} PSNR {:5.1f} dB, largest {:.4f}, {} pixels off by more than 2/255, of which {} graze an edge ({:.2f} "
+            "%)\n",
+            name, d.psnr_db, d.largest, d.over, d.excused, 100.0 * d.excused / (kSide * kSide));
         CHECK(d.psnr_db >= 50);
         CHECK(d.over == d.excused);
         CHECK(d.excused <= kExcusedShare * kSide * kSide);
@@ -42,11 +45,25 @@ TEST_CASE("sampling by corners, other sizes and few bounces agree with the refer
         CAPTURE(bounces);
         const RingResult result =
             render_scene(scene, {.width = 75, .height = 50, .bounces = bounces, .sampling = Sampling::kCorners});
-        const reference::Options options{.width = 75, .height = 50, .bounces = static_cast<int>(bounces), .corners = true};
-        const reference::Difference d = reference::compare(reference::render(scene, options), result.image.rgb, scene, options);
+        const reference::Options options{
+            .width = 75, .height = 50, .bounces = static_cast<int>(bounces), .corners = true};
+        const reference::Difference d =
+            reference::compare(reference::render(scene, options), result.image.rgb, scene, options);
         CHECK(d.psnr_db >= 50);
         CHECK(d.over == d.excused);
     }
+}
+
+TEST_CASE("a scene larger than local memory is read from global memory, with the same answers", "[ring]") {
+    const Scene scene = generate_random(60000, 7);
+    const RingResult result = render_scene(scene, {.width = 20, .height = 20, .pes = 20});
+    CHECK(result.pe_memory.job_words * 4 > device_info(choose_device("")).local_memory_bytes);
+    CHECK(result.build_options.find("-DRAYA_WORDS_LOCAL=0") != std::string::npos);
+    const reference::Options options{.width = 20, .height = 20};
+    const reference::Difference d =
+        reference::compare(reference::render(scene, options), result.image.rgb, scene, options);
+    CHECK(d.over == d.excused);
+    CHECK(d.excused <= 8);  // 60,000 overlapping spheres: a fiftieth of the pixels may graze an edge
 }
 
 }  // namespace raya

@@ -50,7 +50,8 @@ TEST_CASE("between two mirrors the light is a geometric series, one term a bounc
     scene.surfaces = {{.colour = {1, 0.5, 0.25}, .diffuse = 0.5, .specular = 0.5}};
     scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, 1, 0}};
     for (const std::uint32_t bounces : {0u, 1u, 4u, 8u, 31u}) {
-        const RingResult result = render_scene(scene, {.width = 1, .height = 1, .pes = 1, .offset = 0, .bounces = bounces});
+        const RingResult result =
+            render_scene(scene, {.width = 1, .height = 1, .pes = 1, .offset = 0, .bounces = bounces});
         const double series = 0.5 * (1 - std::pow(0.5, bounces + 1)) / 0.5;  // ambient 1, no lights
         CHECK(result.events[RAYA_REFLECTED] == bounces);
         CHECK(pixel(result, 0, 0, 0) == Approx(series).epsilon(1e-6));
@@ -58,7 +59,8 @@ TEST_CASE("between two mirrors the light is a geometric series, one term a bounc
     }
 }
 
-TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and has no light at its rim", "[ring]") {
+TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and has no light at its rim",
+          "[ring]") {
     Scene scene = empty_scene();
     scene.lights = {{{0, 0, 0}, Colour(1, 1, 1)}};
     scene.surfaces = {{.colour = {1, 0.5, 0}, .diffuse = 0.4, .specular = 0.3, .shine = 20}};
@@ -78,7 +80,8 @@ TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre
 
 TEST_CASE("glass of index 1 cannot be seen, and a ray through the centre of a glass sphere goes straight", "[ring]") {
     Scene scene = empty_scene();
-    scene.surfaces = {{.diffuse = 0, .transmittance = 1, .refraction = 1}, {.colour = {0.2, 0.6, 1}, .checker = Checker{{1, 0, 0}, {0, 0, 1}, 0.37}}};
+    scene.surfaces = {{.diffuse = 0, .transmittance = 1, .refraction = 1},
+                      {.colour = {0.2, 0.6, 1}, .checker = Checker{{1, 0, 0}, {0, 0, 1}, 0.37}}};
     scene.planes = {{{0, 0, 1}, 9, 1}};
     const RingCase c{.width = 33, .height = 33, .pes = 33};
     const RingResult wall = render_scene(scene, c);
@@ -86,11 +89,13 @@ TEST_CASE("glass of index 1 cannot be seen, and a ray through the centre of a gl
     const RingResult through = render_scene(scene, c);
     CHECK(through.events[RAYA_REFRACTED] > 200);
     int unequal = 0;  // a ray that passes a corner of the checker within rounding may see the other colour
-    for (std::size_t i = 0; i < wall.image.rgb.size(); ++i) unequal += std::abs(wall.image.rgb[i] - through.image.rgb[i]) > 1e-5f;
+    for (std::size_t i = 0; i < wall.image.rgb.size(); ++i)
+        unequal += std::abs(wall.image.rgb[i] - through.image.rgb[i]) > 1e-5f;
     CHECK(unequal <= 3);
     scene.surfaces[0].refraction = 1.5;
     const RingResult glass = render_scene(scene, c);
-    for (int channel = 0; channel < 3; ++channel) CHECK(pixel(glass, 16, 16, channel) == Approx(pixel(wall, 16, 16, channel)));
+    for (int channel = 0; channel < 3; ++channel)
+        CHECK(pixel(glass, 16, 16, channel) == Approx(pixel(wall, 16, 16, channel)));
 }
 
 }  // namespace raya

@@ -1,5 +1,6 @@
-// Rays by kind against the counts that SPD publishes for its scenes: 513 x 513 rays through pixel corners, tree depth 5 with the eye ray as 1.
-// "Implementations should agree within about 10 %"; these bounds are tighter, two published implementations and a percent around them.
+// Rays by kind against the counts that SPD publishes for its scenes: 513 x 513 rays through pixel corners, tree depth 5
+// with the eye ray as 1. "Implementations should agree within about 10 %"; these bounds are tighter, two published
+// implementations and a percent around them.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -11,7 +12,10 @@ namespace raya {
 namespace {
 
 EventCounts count_rays(const Scene& scene) {
-    return render_scene(scene, {.width = 513, .height = 513, .pes = 513, .offset = 16, .bounces = 4, .sampling = Sampling::kCorners}).events;
+    return render_scene(
+               scene,
+               {.width = 513, .height = 513, .pes = 513, .offset = 16, .bounces = 4, .sampling = Sampling::kCorners})
+        .events;
 }
 
 void check_between(std::uint64_t value, double low, double high) {

@@ -1,0 +1,124 @@
+// Kernel sources: includes put in once, and every line still knows its file and number.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "cl/kernel_source.hpp"
+#include "error.hpp"
+#include "report/scratch_folder.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+const std::filesystem::path kKernels = RAYA_SOURCE_DIR "/kernels";
+
+std::vector<std::string> lines_of(std::istream& in) {
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+void write(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++found;
+    return found;
+}
+
+bool is_include(const std::string& line) { return line.starts_with("#include \""); }
+
+}  // namespace
+
+TEST_CASE("includes are put in where they stand, each once, and the line numbers are kept", "[cl]") {
+    const ScratchFolder folder;
+    write(folder / "inner.clh", "inner 1\ninner 2\n");
+    write(folder / "outer.clh", "#include \"inner.clh\"\nouter 2\n");
+    const std::string text = "one\n#include \"outer.clh\"\nthree\n#include \"inner.clh\"\n#include <system.h>\n";
+    CHECK(expand_kernel_source(text, "some.cl", folder.path()) ==
+          "#line 1 \"some.cl\"\none\n"
+          "#line 1 \"outer.clh\"\n#line 1 \"inner.clh\"\ninner 1\ninner 2\n#line 2 \"outer.clh\"\nouter 2\n"
+          "#line 3 \"some.cl\"\nthree\n#line 5 \"some.cl\"\n#include <system.h>\n");
+    write(folder / "some.cl", text);
+    CHECK(kernel_source("some.cl", folder.path()) == expand_kernel_source(text, "some.cl", folder.path()));
+}
+
+TEST_CASE("files that include each other end", "[cl]") {
+    const ScratchFolder folder;
+    write(folder / "a.clh", "#include \"b.clh\"\na 2\n");
+    write(folder / "b.clh", "#include \"a.clh\"\nb 2\n");
+    const std::string source = kernel_source("a.clh", folder.path());
+    CHECK(count(source, "a 2\n") == 1);
+    CHECK(count(source, "b 2\n") == 1);
+}
+
+TEST_CASE("every line of the trace kernel stands in its file at its number, and none is lost", "[cl]") {
+    std::istringstream source(kernel_source("ring/trace.cl"));
+    std::map<std::string, std::vector<std::string>> files;
+    std::map<std::string, std::size_t> taken;
+    std::string file;
+    std::size_t number = 0;
+    for (const std::string& line : lines_of(source)) {
+        if (line.starts_with("#line ")) {
+            const std::size_t quote = line.find('"');
+            file = line.substr(quote + 1, line.size() - quote - 2);
+            number = std::stoul(line.substr(6));
+            std::ifstream in(kKernels / file);
+            if (!files.contains(file)) files[file] = lines_of(in);
+            continue;
+        }
+        CAPTURE(file, number);
+        REQUIRE(number <= files[file].size());
+        REQUIRE(files[file][number - 1] == line);
+        ++number;
+        ++taken[file];
+    }
+    CHECK(files.size() > 10);
+    for (const auto& [name, lines] : files) {
+        CAPTURE(name);
+        const auto includes = std::count_if(lines.begin(), lines.end(), is_include);
+        CHECK(taken[name] + static_cast<std::size_t>(includes) == lines.size());
+    }
+}
+
+TEST_CASE("the program carries the kernels of the project's folder", "[cl]") {
+    int kernels = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(kKernels)) {
+        if (entry.path().extension() != ".cl") continue;
+        ++kernels;
+        const std::string file = std::filesystem::relative(entry.path(), kKernels).string();
+        CAPTURE(file);
+        CHECK(kernel_source(file) == kernel_source(file, kKernels));
+    }
+    CHECK(kernels > 0);
+}
+
+TEST_CASE("a file or an include that does not exist is refused by name", "[cl]") {
+    CHECK_THROWS_AS(kernel_source("ring/tarce.cl"), UserError);
+    CHECK_THROWS_WITH(kernel_source("ring/tarce.cl"), Contains("'ring/tarce.cl'"));
+    CHECK_THROWS_AS(expand_kernel_source("#include \"none.clh\"\n", "t.cl"), UserError);
+    CHECK_THROWS_WITH(expand_kernel_source("#include \"none.clh\"\n", "t.cl"), Contains("'none.clh'"));
+    const ScratchFolder folder;
+    CHECK_THROWS_AS(kernel_source("ring/trace.cl", folder.path()), UserError);
+    CHECK_THROWS_WITH(kernel_source("ring/trace.cl", folder.path()),
+                      Contains((folder / "ring/trace.cl").string()) && Contains("--kernel-dir"));
+}
+
+TEST_CASE("a build log names the file and line of the mistake", "[cl]") {
+    const ScratchFolder folder;
+    write(folder / "broken.clh", "// a comment\nint two(void) { return first_mistake; }\n");
+    const std::string text = "#include \"broken.clh\"\n\nkernel void f(global int* a) { a[0] = second_mistake; }\n";
+    const Session session(choose_device(""));
+    const std::string source = expand_kernel_source(text, "mine.cl", folder.path());
+    CHECK_THROWS_AS(session.build("mine.cl", source, {}), DeviceError);
+    CHECK_THROWS_WITH(session.build("mine.cl", source, {}), Contains("broken.clh:2") && Contains("first_mistake") &&
+                                                                Contains("mine.cl:3") && Contains("second_mistake"));
+}

@@ -1,0 +1,51 @@
+// A render of a scene of scenes/ by the program, with every file that it can write.
+#pragma once
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/run_program.hpp"
+#include "report/scratch_folder.hpp"
+
+namespace raya {
+
+inline constexpr int kTestWidth = 20, kTestHeight = 12;  // pixels, unless --size is among the options
+
+class RenderFiles {
+  public:
+    /// Renders the scene; the test case ends here if that fails. 4 lanes unless the options name others, so that few
+    /// kernels are built.
+    explicit RenderFiles(const std::string& scene, std::vector<std::string> options = {},
+                         const std::string& extension = ".png", const std::string& cost_extension = ".exr")
+        : image_(folder_ / ("image" + extension)),
+          cost_(folder_ / ("cost" + cost_extension)),
+          report_(folder_ / "report.json") {
+        const auto add_default = [&](const std::string& option, const std::string& value) {
+            if (std::find(options.begin(), options.end(), option) == options.end())
+                options.insert(options.end(), {option, value});
+        };
+        add_default("--size", std::to_string(kTestWidth) + "x" + std::to_string(kTestHeight));
+        add_default("--pes", std::to_string(kTestWidth));
+        add_default("--lanes", "4");
+        options.insert(options.begin(),
+                       {"render", scene_file(scene), "-o", image_, "--cost", cost_, "--report", report_});
+        run_ = run_raya(options);
+        INFO(run_.told());
+        REQUIRE(run_.code == 0);
+        REQUIRE(folder_.entries() == 3);
+    }
+
+    const std::string& image() const { return image_; }
+    const std::string& cost() const { return cost_; }
+    const Outcome& run() const { return run_; }
+    nlohmann::json report() const { return nlohmann::json::parse(file_contents(report_)); }
+
+  private:
+    ScratchFolder folder_;
+    std::string image_, cost_, report_;
+    Outcome run_;
+};
+
+}  // namespace raya

@@ -1,0 +1,127 @@
+// Runs the built program as a user does: a process of its own with arguments, seen from outside by what it prints and
+// its exit code.
+#pragma once
+#include <fcntl.h>
+#include <grp.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace raya {
+
+struct Outcome {
+    std::string command;  // for messages of a failed test
+    int code = 0;         // exit code; 128 + signal if one ended the program
+    std::string out, err;
+    std::string told() const { return command + "\nexit code " + std::to_string(code) + "\n" + out + "\n" + err; }
+};
+
+/// What a run finds around it.
+struct Surroundings {
+    std::vector<std::pair<std::string, std::string>> variables{};  // set, on top of this process's own
+    bool as_nobody = false;  // if this process is root's, run as a user whom permissions bind
+};
+
+namespace run_program_detail {
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+inline File temporary_file() {
+    File file(std::tmpfile(), &std::fclose);
+    if (!file) throw std::runtime_error("no temporary file");
+    return file;
+}
+
+inline std::string contents(std::FILE* file) {
+    std::rewind(file);
+    std::string text;
+    std::array<char, 4096> block{};
+    while (const std::size_t read = std::fread(block.data(), 1, block.size(), file)) text.append(block.data(), read);
+    return text;
+}
+
+/// Pointers into the texts, as exec takes them.
+inline std::vector<char*> pointers(std::vector<std::string>& texts) {
+    std::vector<char*> all;
+    for (std::string& text : texts) all.push_back(text.data());
+    all.push_back(nullptr);
+    return all;
+}
+
+inline std::vector<std::string> environment(const Surroundings& around) {
+    std::vector<std::string> all;
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+        const std::string_view text = *variable;
+        bool replaced = false;
+        for (const auto& [name, value] : around.variables) replaced = replaced || text.starts_with(name + "=");
+        if (!replaced) all.emplace_back(text);
+    }
+    for (const auto& [name, value] : around.variables) all.push_back(name + "=" + value);
+    return all;
+}
+
+inline void leave_root() {
+    constexpr uid_t kNobody = 65534;
+    if (::geteuid() != 0) return;
+    if (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0) ::_exit(126);
+}
+
+}  // namespace run_program_detail
+
+/// Runs raya with these arguments and no input, without a shell, and waits for its end. std::runtime_error if it cannot
+/// be started.
+inline Outcome run_raya(std::vector<std::string> arguments, const Surroundings& around = {}) {
+    namespace detail = run_program_detail;
+    Outcome outcome;
+    outcome.command = "raya";
+    for (const std::string& argument : arguments) outcome.command += " '" + argument + "'";
+    arguments.insert(arguments.begin(), "raya");
+    std::vector<std::string> variables = detail::environment(around);
+    const std::vector<char*> argv = detail::pointers(arguments), envp = detail::pointers(variables);
+    const detail::File input = detail::temporary_file(), out = detail::temporary_file(), err = detail::temporary_file();
+    // Opened here, so that a user who may not enter the build's folder can still run it.
+    const int program = ::open(RAYA_PROGRAM, O_RDONLY | O_CLOEXEC);
+    const pid_t child = program < 0 ? -1 : ::fork();
+    if (child == 0) {
+        ::dup2(::fileno(input.get()), STDIN_FILENO);
+        ::dup2(::fileno(out.get()), STDOUT_FILENO);
+        ::dup2(::fileno(err.get()), STDERR_FILENO);
+        if (around.as_nobody) detail::leave_root();
+        ::fexecve(program, argv.data(), envp.data());
+        ::_exit(127);
+    }
+    if (program >= 0) ::close(program);
+    int status = 0;
+    while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    outcome.out = detail::contents(out.get());
+    outcome.err = detail::contents(err.get());
+    if (child < 0 || outcome.code == 126 || outcome.code == 127)
+        throw std::runtime_error("cannot run " RAYA_PROGRAM ": " + outcome.told());
+    return outcome;
+}
+
+/// A scene of scenes/.
+inline std::string scene_file(const std::string& name) { return RAYA_SOURCE_DIR "/scenes/" + name + ".nff"; }
+
+inline std::string file_contents(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error("cannot read " + path.string());
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+}  // namespace raya

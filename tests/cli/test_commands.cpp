@@ -1,0 +1,168 @@
+// What the commands print and make when all is well.
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "cli/render_files.hpp"
+
+namespace raya {
+namespace {
+using Words = std::vector<std::string>;
+
+Outcome succeed(const Words& arguments) {
+    Outcome run = run_raya(arguments);
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK(run.err.empty());
+    return run;
+}
+
+Words words_of(const std::string& line) {
+    std::istringstream text(line);
+    Words words;
+    for (std::string word; text >> word;) words.push_back(word);
+    return words;
+}
+
+std::vector<Words> lines_that_start_with(const std::string& text, const std::string& word) {
+    std::istringstream lines(text);
+    std::vector<Words> found;
+    for (std::string line; std::getline(lines, line);) {
+        const Words words = words_of(line);
+        if (!words.empty() && words[0] == word) found.push_back(words);
+    }
+    return found;
+}
+
+TEST_CASE("--version prints name and version", "[cli]") {
+    CHECK(succeed({"--version"}).out == "raya " RAYA_VERSION "\n");
+}
+
+TEST_CASE("--help names every command and the exit codes", "[cli]") {
+    const std::string help = succeed({"--help"}).out;
+    for (const char* text :
+         {"render", "devices", "generate", "bench", "Exit codes: 0 done, 2 bad option or input, 3 device"})
+        CHECK_THAT(help, Catch::Contains(text));
+}
+
+TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
+    struct Row {
+        Words command;
+        Words texts;
+    };
+    const Words of_a_render = {"--machine NAME=spa",
+                               "256 PEs of 32 KB",
+                               "grande",
+                               "--size N|WxH",
+                               "in pixels, 1..16384 a side; default: the scene's",
+                               "1..W*H; default: the machine's",
+                               "in pixels, 0..W-1; default: 16",
+                               "--mapping NAME=cyclic",
+                               "cyclic|block=cyclic",
+                               "--format TEXT=fp32",
+                               "0..31; default: 8",
+                               "centres|corners=centres",
+                               "1, 4, 8 or 16; default",
+                               "1..64; default: 1 on a CPU",
+                               "RAYA_DEVICE",
+                               "--kernel-dir DIR"};
+    Words render = of_a_render;
+    render.insert(render.end(), {"SCENE.nff", ".png (sRGB), .exr or .pfm (linear)", "modelled cycles of each pixel",
+                                 "--report FILE.json", "--profile", "--quiet"});
+    Words bench = of_a_render;
+    bench.insert(bench.end(), {"--samples N=7", "default: 30 spheres and a plane, 512 x 512"});
+    const std::vector<Row> rows = {{{"render"}, render},
+                                   {{"bench"}, bench},
+                                   {{"devices"}, {"every OpenCL device of every platform"}},
+                                   {{"generate"}, {"balls", "uniform", "random", "centre"}},
+                                   {{"generate", "balls"}, {"--level LEVEL=4", "0..6", "7,381 spheres", "SCENE.nff"}},
+                                   {{"generate", "uniform"}, {"1..1000000", "--voxels XxYxZ", "1..256 each"}},
+                                   {{"generate", "random"}, {"1..1000000", "--seed N=1"}},
+                                   {{"generate", "centre"}, {"-o,--output SCENE.nff"}}};
+    for (const Row& row : rows) {
+        Words arguments = row.command;
+        arguments.emplace_back("--help");
+        const std::string help = succeed(arguments).out;
+        for (const std::string& text : row.texts) CHECK_THAT(help, Catch::Contains(text));
+    }
+}
+
+TEST_CASE("devices lists each device with the lanes that raya chooses", "[cli]") {
+    const std::string out = succeed({"devices"}).out;
+    INFO(out);
+    for (const char* column : {"device", "platform", "lanes", "local KB", "div/sqrt exact", "profiling"})
+        CHECK_THAT(out, Catch::Contains(column));
+    CHECK(lines_that_start_with(out, "0").size() == 1);
+    CHECK_THAT(out, Catch::Contains("0: OpenCL") && Catch::Contains("--device takes a number or a part of a name"));
+}
+
+TEST_CASE("a render ends with a short summary", "[cli]") {
+    const RenderFiles files("centre");
+    const nlohmann::json report = files.report();
+    const std::string& out = files.run().out;
+    INFO(out);
+    CHECK(files.run().err.empty());
+    CHECK(std::count(out.begin(), out.end(), '\n') <= 8);
+    for (const char* text : {"20 x 12 pixels on spa (20 PEs, cyclic mapping, offset 16), fp32, 8 bounces",
+                             "240 primary", "u = ", "efficiency", "in each PE of 32 KB", "Mrays/s", "(4 lanes)"})
+        CHECK_THAT(out, Catch::Contains(text));
+    CHECK_THAT(out, Catch::Contains(report["image"]["hash"].get<std::string>()));
+    CHECK_THAT(out, Catch::Contains(std::to_string(report["rays"]["shadow"].get<int>()) + " shadow"));
+}
+
+TEST_CASE("--quiet prints nothing", "[cli]") {
+    const Outcome run = RenderFiles("centre", {"--quiet"}).run();
+    CHECK(run.out.empty());
+    CHECK(run.err.empty());
+}
+
+TEST_CASE("--profile prints launches and times of every labelled command", "[cli]") {
+    const RenderFiles files("centre", {"--profile", "--quiet"});
+    const std::string& out = files.run().out;
+    INFO(out);
+    REQUIRE(lines_that_start_with(out, "label").size() == 1);
+    const auto commands = files.report()["measured"]["commands"];
+    for (const auto& command : commands) CHECK_THAT(out, Catch::Contains(command["label"].get<std::string>()));
+    CHECK(std::count(out.begin(), out.end(), '\n') ==
+          static_cast<long>(commands.size()) + 2);  // an empty line, the heading
+}
+
+TEST_CASE("what generate makes can be rendered", "[cli]") {
+    const Words kind = GENERATE(Words{"balls", "--level", "1"}, Words{"uniform", "9", "--voxels", "2x2x2"},
+                                Words{"random", "9", "--seed", "3"}, Words{"centre"});
+    const ScratchFolder folder;
+    Words arguments = {"generate"};
+    arguments.insert(arguments.end(), kind.begin(), kind.end());
+    arguments.insert(arguments.end(), {"-o", folder / "scene.nff"});
+    CHECK(succeed(arguments).out.empty());
+    succeed({"render", folder / "scene.nff", "-o", folder / "x.png", "--size", "8", "--pes", "4", "--lanes", "4"});
+    CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("the same seed generates the same bytes, another seed others", "[cli]") {
+    const ScratchFolder folder;
+    for (const auto& [seed, name] : {std::pair{"3", "a"}, {"3", "b"}, {"4", "c"}})
+        succeed({"generate", "random", "9", "--seed", seed, "-o", folder / name});
+    CHECK(file_contents(folder / "a") == file_contents(folder / "b"));
+    CHECK(file_contents(folder / "a") != file_contents(folder / "c"));
+}
+
+TEST_CASE("bench prints a row for each number of lanes, all of one image", "[cli]") {
+    const std::string out = succeed({"bench", "--samples", "1", "--size", "64"}).out;
+    INFO(out);
+    CHECK_THAT(out, Catch::Contains("spheres.nff") && Catch::Contains("64 x 64 pixels, 256 PEs, 8 bounces"));
+    const std::vector<Words> rows = lines_that_start_with(out, "trace");
+    const Words lanes = {"1", "4", "8", "16"};
+    REQUIRE(rows.size() == lanes.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        REQUIRE(rows[i].size() == 11);
+        CHECK(rows[i][1] == lanes[i]);
+        CHECK(rows[i][3] == "fp32");
+        CHECK(std::stod(rows[i][4]) > 0);         // Mrays/s of the best sample
+        CHECK(rows[i][4] == rows[i][5]);          // one sample is the best and the median
+        CHECK(rows[i].back() == rows[0].back());  // hash
+    }
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,52 @@
+// Trouble with the device or its compiler: exit code 3, with all that is needed to mend it.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "cli/refusals.hpp"
+
+namespace raya {
+namespace {
+namespace fs = std::filesystem;
+
+/// Copies kernels/ and adds a line to one of its files. Returns the line's number.
+int copy_kernels(const fs::path& to, const std::string& file, const std::string& line) {
+    fs::copy(RAYA_SOURCE_DIR "/kernels", to, fs::copy_options::recursive);
+    const std::string text = file_contents(to / file);
+    std::ofstream(to / file, std::ios::app) << line << '\n';
+    return static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 1;
+}
+
+TEST_CASE("a kernel that does not compile ends with device, options and build log", "[cli]") {
+    const ScratchFolder kernels, outputs;
+    const std::string broken = kernels / "kernels", planes = scene_file("planes");
+    const int line = copy_kernels(broken, "geometry/sphere.clh", "no_such_type broken;");
+    check_refused(outputs, render_into(outputs, planes, {"--lanes", "4", "--kernel-dir", broken}), 3,
+                  {"building program 'ring/trace.cl'", "CL_BUILD_PROGRAM_FAILURE", "remedy",
+                   "device: ", "options: -cl-std=CL1.2 -DRAYA_LANES=4 ",
+                   "build log:", "geometry/sphere.clh:" + std::to_string(line), "no_such_type"});
+}
+
+TEST_CASE("an unknown device ends with the list of those that there are", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string scene = scene_file("planes");
+    const Words message = {"no OpenCL device matches 'nosuch'", "remedy: a number or a part of a name", "\n  0: "};
+    check_refused(outputs, render_into(outputs, scene, {"--device", "nosuch"}), 3, message);
+    check_refused(outputs, render_into(outputs, scene), 3, message, {.variables = {{"RAYA_DEVICE", "nosuch"}}});
+    check_refused(outputs, {"bench", "--device", "nosuch"}, 3, message);
+    check_refused(outputs, render_into(outputs, scene, {"--device", "999"}), 3,
+                  {"no OpenCL device matches '999'", "\n  0: "});
+}
+
+TEST_CASE("a machine without OpenCL ends with the remedy", "[cli]") {
+    const ScratchFolder no_drivers, outputs;
+    const Surroundings without{.variables = {{"OCL_ICD_VENDORS", no_drivers.path()}}};
+    const Words message = {"no OpenCL device found", "apt install pocl-opencl-icd", "OCL_ICD_VENDORS"};
+    check_refused(outputs, render_into(outputs, scene_file("planes")), 3, message, without);
+    check_refused(outputs, {"devices"}, 3, message, without);
+    check_refused(outputs, {"bench"}, 3, message, without);
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,138 @@
+// Options that the program refuses: exit code 2, and a message that names the option, its value and what would be
+// right.
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "cli/refusals.hpp"
+
+namespace raya {
+namespace {
+
+struct Row {
+    Words options;
+    Words message;
+};
+
+void check_render_options(const std::vector<Row>& rows) {
+    const ScratchFolder outputs;
+    for (const Row& row : rows)
+        check_refused(outputs, render_into(outputs, scene_file("planes"), row.options), 2, row.message);
+}
+
+TEST_CASE("a name that the program does not know is refused with those that it knows", "[cli]") {
+    check_render_options({{{"--machine", "sparc"}, {"'sparc'", "spa, grande"}},
+                          {{"--mapping", "spiral"}, {"--mapping spiral", "cyclic, column"}},
+                          {{"--fold", "diagonal"}, {"--fold diagonal", "cyclic or block"}},
+                          {{"--format", "e6m15"}, {"--format e6m15", "fp32"}},
+                          {{"--sampling", "random"}, {"--sampling random", "centres or corners"}}});
+}
+
+TEST_CASE("a number outside its range is refused with the range", "[cli]") {
+    check_render_options({{{"--lanes", "3"}, {"--lanes 3", "1, 4, 8 or 16"}},
+                          {{"--lanes", "0"}, {"--lanes", "1 or more"}},
+                          {{"--group", "65"}, {"--group 65", "1..64"}},
+                          {{"--group", "0"}, {"--group", "1 or more"}},
+                          {{"--bounces", "32"}, {"--bounces 32", "0..31"}},
+                          {{"--size", "8", "--pes", "0"}, {"--pes 0", "1..64", "a PE for each pixel"}},
+                          {{"--size", "8x4", "--pes", "33"}, {"--pes 33", "1..32"}},
+                          {{"--size", "8x16", "--pes", "8", "--offset", "8"}, {"--offset 8", "0..7", "width"}},
+                          {{"--size", "100000"}, {"--size 100000x100000", "1..16384 pixels"}},
+                          {{"--size", "16385x1"}, {"--size 16385x1", "1..16384 pixels"}}});
+}
+
+TEST_CASE("an absurdly large number is refused like any other outside the range", "[cli]") {
+    check_render_options({{{"--lanes", "4000000000"}, {"--lanes 4000000000", "1, 4, 8 or 16"}},
+                          {{"--group", "4000000000"}, {"--group 4000000000", "1..64"}},
+                          {{"--bounces", "4000000000"}, {"--bounces 4000000000", "0..31"}}});
+}
+
+TEST_CASE("a size that is no size is refused", "[cli]") {
+    for (const std::string size : {"0", "12y", "8x", "x8", "8x8x8", "-4", "1e2"})
+        check_render_options({{{"--size", size}, {"--size " + size + ": must be"}}});
+}
+
+TEST_CASE("a number that is no whole number is refused", "[cli]") {
+    for (const std::string option : {"--pes", "--offset", "--bounces", "--lanes", "--group"})
+        check_render_options({{{option, "x"}, {option, "--help"}}});
+    for (const std::string value : {"-1", "1.5", "4294967296"})
+        check_render_options({{{"--pes", value}, {"--pes", value, "--help"}}});
+}
+
+TEST_CASE("words that do not belong there are refused with a hint at the help", "[cli]") {
+    check_render_options({{{"--nonsense"}, {"--nonsense", "--help"}},
+                          {{"second.nff"}, {"second.nff", "--help"}},
+                          {{"--size"}, {"--size", "missing", "--help"}},
+                          {{"--pes", "4", "--pes", "5"}, {"--pes", "--help"}}});
+    const ScratchFolder outputs;
+    const std::string scene = scene_file("planes");
+    check_refused(outputs, {}, 2, {"subcommand is required", "Run with --help for more information"});
+    check_refused(outputs, {"frobnicate"}, 2, {"subcommand is required", "--help"});
+    check_refused(outputs, {"render"}, 2, {"SCENE is required", "--help"});
+    check_refused(outputs, {"render", scene}, 2, {"--output is required", "--help"});
+    check_refused(outputs, {"devices", "extra"}, 2, {"extra", "--help"});
+    check_refused(outputs, {"generate"}, 2, {"subcommand is required", "--help"});
+}
+
+TEST_CASE("bench and generate refuse numbers outside their ranges", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string scene = outputs / "x.nff";
+    check_refused(outputs, {"bench", "--samples", "0"}, 2, {"--samples 0", "1..1000"});
+    check_refused(outputs, {"bench", "--samples", "1", "--lanes", "3"}, 2, {"--lanes 3", "1, 4, 8 or 16"});
+    check_refused(outputs, {"generate", "balls", "--level", "7", "-o", scene}, 2, {"level 7", "0..6"});
+    check_refused(outputs, {"generate", "balls", "--level", "-1", "-o", scene}, 2, {"level -1", "0..6"});
+    check_refused(outputs, {"generate", "balls"}, 2, {"--output is required"});
+    check_refused(outputs, {"generate", "uniform", "9", "--voxels", "2x2", "-o", scene}, 2,
+                  {"--voxels 2x2", "XxYxZ"});
+    check_refused(outputs, {"generate", "uniform", "9", "--voxels", "257x1x1", "-o", scene}, 2,
+                  {"257 voxels", "1..256"});
+    check_refused(outputs, {"generate", "uniform", "9", "-o", scene}, 2, {"--voxels is required"});
+    check_refused(outputs, {"generate", "random", "0", "-o", scene}, 2, {"0 spheres", "1..1000000"});
+    check_refused(outputs, {"generate", "random", "1000001", "-o", scene}, 2, {"1000001 spheres", "1..1000000"});
+    check_refused(outputs, {"generate", "random", "9", "--seed", "x", "-o", scene}, 2, {"--seed", "x"});
+}
+
+TEST_CASE("a file that cannot be written is refused before anything is rendered", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string scene = scene_file("planes"), image = outputs / "x.png", missing = outputs / "missing/x";
+    check_refused(outputs, {"render", scene, "-o", outputs / "x.jpg"}, 2, {"x.jpg", ".png, .exr, .pfm"});
+    check_refused(outputs, {"render", scene, "-o", outputs / "x"}, 2, {"extension", ".png, .exr, .pfm"});
+    check_refused(outputs, {"render", scene, "-o", ""}, 2, {"--output", "must not be empty"});
+    check_refused(outputs, {"render", scene, "-o", outputs.path()}, 2, {outputs.path(), "cannot write"});
+    check_refused(outputs, {"render", scene, "-o", missing + ".png"}, 2, {"/missing' does not exist", "mkdir -p"});
+    check_refused(outputs, {"render", scene, "-o", image, "--cost", outputs / "c.png"}, 2,
+                  {"c.png", "one of .exr, .pfm"});
+    check_refused(outputs, {"render", scene, "-o", image, "--cost", missing + ".exr"}, 2, {"/missing' does not exist"});
+    check_refused(outputs, {"render", scene, "-o", image, "--report", missing + ".json"}, 2,
+                  {"/missing' does not exist"});
+    check_refused(outputs, {"render", scene, "-o", image, "--report", outputs.path()}, 2, {"it is a folder"});
+    check_refused(outputs, {"generate", "centre", "-o", missing + ".nff"}, 2, {"/missing' does not exist"});
+}
+
+TEST_CASE("a folder without permission to write is refused", "[cli]") {
+    const ScratchFolder outputs;
+    ::chmod(outputs.path().c_str(), 0555);
+    const std::string refused = "'" + outputs.path().string() + "' is not writable";
+    check_refused(outputs, render_into(outputs, scene_file("planes")), 2, {refused, "permissions"},
+                  {.as_nobody = true});
+    ::chmod(outputs.path().c_str(), 0755);
+}
+
+TEST_CASE("a folder without kernels is refused", "[cli]") {
+    const ScratchFolder empty;
+    check_render_options({{{"--kernel-dir", empty / "missing"}, {"--kernel-dir", "missing/ring/trace.cl"}},
+                          {{"--kernel-dir", empty.path()}, {"--kernel-dir", "ring/trace.cl", "kernels/"}}});
+}
+
+}  // namespace
+TEST_CASE("empty values, negative counts and one file named twice are refused", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string scene = std::string(RAYA_SOURCE_DIR) + "/scenes/planes.nff", image = (outputs / "x.pfm").string();
+    for (const char* option : {"--lanes", "--size", "--device", "--format", "--report"})
+        check_refused(outputs, {"render", scene, "-o", image, option, ""}, 2, {option, "must not be empty"});
+    check_refused(outputs, {"generate", "random", "5", "--seed", "-1", "-o", image}, 2, {"--seed", "'-1' is not a whole number"});
+    check_refused(outputs, {"render", scene, "-o", image, "--cost", image}, 2, {"named twice"});
+    check_refused(outputs, {"render", scene, "-o", image, "--report", scene}, 2, {"planes.nff", "named twice"});
+}
+
+}  // namespace raya

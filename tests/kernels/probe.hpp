@@ -1,0 +1,138 @@
+// The kernels of probe.cl as functions of a scene and rays.
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/kernel_runner.hpp"
+#include "reference/reference.hpp"
+#include "scene/packer.hpp"
+
+namespace raya {
+
+/// The words of a scene; camera, mapping and cycles do not matter to the pieces.
+inline std::vector<std::uint32_t> job_words(const Scene& scene) {
+    JobSettings settings;
+    settings.mapping = {16, 16, 1, 0, RAYA_FOLD_CYCLIC};
+    return pack_job(scene, settings).words;
+}
+
+/// Patches of more than three corners are several polygons of a job: the number that the scene gives to each of a job's
+/// objects.
+inline std::vector<int> object_numbers(const Scene& scene) {
+    std::vector<int> numbers;
+    const std::size_t first_polygon = scene.spheres.size() + scene.planes.size();
+    for (std::size_t i = 0; i < scene.object_count(); ++i) {
+        const bool polygon = i >= first_polygon && i < first_polygon + scene.polygons.size();
+        const bool patch = polygon && !scene.polygons[i - first_polygon].normals.empty();
+        numbers.insert(numbers.end(), patch ? scene.polygons[i - first_polygon].vertices.size() - 2 : 1,
+                       static_cast<int>(i));
+    }
+    return numbers;
+}
+
+/// What rays without another limit have; a miss leaves it as the distance.
+inline constexpr float kFarLimit = 0x1p60F;
+
+/// [ray][7]: origin, direction, limit.
+inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, float limit = kFarLimit) {
+    std::vector<float> words;
+    for (const reference::Ray& ray : rays) {
+        for (int axis = 0; axis < 3; ++axis) words.push_back(static_cast<float>(ray.origin[axis]));
+        for (int axis = 0; axis < 3; ++axis) words.push_back(static_cast<float>(ray.direction[axis]));
+        words.push_back(limit);
+    }
+    return words;
+}
+
+inline constexpr std::uint32_t kNoObject = 0xffffffffu;
+
+struct ProbedHits {
+    std::vector<std::uint32_t> objects;  // numbers in the job
+    std::vector<float> distances;
+};
+
+inline ProbedHits closest_hits(KernelRunner& runner, const std::vector<std::uint32_t>& job,
+                               const std::vector<float>& rays) {
+    const std::size_t count = rays.size() / 7;
+    const auto job_buffer = runner.filled("job", job);
+    const auto ray_buffer = runner.filled("rays", rays);
+    auto objects = runner.constant<std::uint32_t>("objects", count, 0);
+    auto distances = runner.constant<float>("distances", count, 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&, Buffer<float>&>(
+        "closest_hits", count, job_buffer, ray_buffer, objects, distances);
+    return {runner.read(objects), runner.read(distances)};
+}
+
+struct ProbedPlaces {
+    enum Which : std::size_t { kPoint, kOuter, kInner, kGeometric, kNormal, kColour };
+    std::vector<std::uint32_t> leaving;
+    std::vector<float> places;  // [ray][6][3]
+
+    Vec3 vector(std::size_t ray, Which which) const {
+        const float* from = &places[ray * 18 + which * 3];
+        return {from[0], from[1], from[2]};
+    }
+};
+
+inline ProbedPlaces find_places(KernelRunner& runner, const std::vector<std::uint32_t>& job,
+                                const std::vector<float>& rays) {
+    const std::size_t count = rays.size() / 7;
+    const auto job_buffer = runner.filled("job", job);
+    const auto ray_buffer = runner.filled("rays", rays);
+    auto leaving = runner.constant<std::uint32_t>("leaving", count, 0);
+    auto places = runner.constant<float>("places", count * 18, 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&, Buffer<float>&>(
+        "find_places", count, job_buffer, ray_buffer, leaving, places);
+    return {runner.read(leaving), runner.read(places)};
+}
+
+/// A ray of the tree as the kernel holds it.
+struct ProbedRay {
+    Vec3 origin, direction;
+    double weight;
+};
+
+struct ProbedSteps {
+    static constexpr std::size_t kStateWords = 3 + RAYA_EVENTS;
+    static constexpr std::size_t kNumberWords = 17;
+    std::vector<std::uint32_t> state;  // [ray][kStateWords]
+    std::vector<float> numbers;        // [ray][kNumberWords]
+
+    bool walking(std::size_t ray) const { return state[ray * kStateWords] != 0; }
+    std::uint32_t level(std::size_t ray) const { return state[ray * kStateWords + 1]; }
+    std::uint32_t waits(std::size_t ray) const { return state[ray * kStateWords + 2]; }
+    std::uint32_t events(std::size_t ray, std::size_t kind) const { return state[ray * kStateWords + 3 + kind]; }
+    Colour sum(std::size_t ray) const { return vector(ray, 0); }
+    ProbedRay followed(std::size_t ray) const { return {vector(ray, 3), vector(ray, 6), number(ray, 9)}; }
+    ProbedRay waiting(std::size_t ray) const { return {vector(ray, 10), vector(ray, 13), number(ray, 16)}; }
+
+  private:
+    double number(std::size_t ray, std::size_t word) const { return numbers[ray * kNumberWords + word]; }
+    Vec3 vector(std::size_t ray, std::size_t word) const {
+        return {number(ray, word), number(ray, word + 1), number(ray, word + 2)};
+    }
+};
+
+inline ProbedSteps shade_once(KernelRunner& runner, const std::vector<std::uint32_t>& job,
+                              const std::vector<float>& rays, std::uint32_t level) {
+    const std::size_t count = rays.size() / 7;
+    const auto job_buffer = runner.filled("job", job);
+    const auto ray_buffer = runner.filled("rays", rays);
+    auto state = runner.constant<std::uint32_t>("state", count * ProbedSteps::kStateWords, 0);
+    auto numbers = runner.constant<float>("numbers", count * ProbedSteps::kNumberWords, 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
+        "shade_once", count, job_buffer, ray_buffer, level, state, numbers);
+    return {runner.read(state), runner.read(numbers)};
+}
+
+/// The bits of numbers, so that equal means equal to the last one.
+inline std::vector<std::uint32_t> bits(const std::vector<float>& numbers) {
+    std::vector<std::uint32_t> words;
+    words.reserve(numbers.size());
+    for (const float number : numbers) words.push_back(std::bit_cast<std::uint32_t>(number));
+    return words;
+}
+
+}  // namespace raya

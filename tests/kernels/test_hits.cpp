@@ -1,0 +1,127 @@
+// Closest hits of the kernels against the reference, for every kind of object and every way to build them.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kernels/agreement.hpp"
+#include "kernels/probe.hpp"
+#include "kernels/random_scene.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kRays = 10'000;
+
+// A coordinate is rounded by 2^-25 of the scene's extent, 3e-8, and a hit passes through some thirty roundings: 9e-7.
+constexpr double kDistanceLimit = 1e-6;  // of the scene's extent
+
+// The share of the rays that may differ by more because they graze an edge or an outline. What reaches 1e-6 of the
+// extent around the outlines of twenty objects is about 1e-4 of what the rays see.
+constexpr double kMostGrazing = 0.001;
+
+Found reference_hit(const Scene& scene, const reference::Ray& ray) {
+    const auto hit = reference::closest_hit(scene, ray);
+    if (!hit) return {-1};
+    return {static_cast<double>(hit->object), hit->t};
+}
+
+std::size_t check_against_reference(const Scene& scene, const std::vector<reference::Ray>& rays,
+                                    const ProbedHits& hits) {
+    const double limit = kDistanceLimit * scene_extent(scene);
+    const std::vector<int> numbers = object_numbers(scene);
+    const auto find = [&](const reference::Ray& ray) { return reference_hit(scene, ray); };
+    Agreement agreement{.reach = limit};
+    std::size_t struck = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        CAPTURE(i, hits.objects[i], hits.distances[i]);
+        const bool hit = hits.objects[i] != kNoObject;
+        struck += hit;
+        if (hit) REQUIRE(hits.objects[i] < numbers.size());
+        if (!hit) REQUIRE(hits.distances[i] == kFarLimit);
+        const Found found = hit ? Found{double(numbers[hits.objects[i]]), hits.distances[i]} : Found{-1};
+        CHECK(agreement.accepts(find, rays[i], found, {0, limit}));
+    }
+    CHECK(struck > kRays / 10);
+    CHECK(static_cast<double>(agreement.grazing) <= kMostGrazing * kRays);
+    return agreement.grazing;
+}
+
+}  // namespace
+
+TEST_CASE("closest hits agree with the reference, with the same bits however they are built", "[kernels]") {
+    const std::vector<reference::Ray> rays = random_rays(11, kRays);
+    const std::vector<float> words = ray_words(rays);
+    std::map<std::string, ProbedHits> first;
+    std::string grazing;
+    for (const Variant& variant : variants()) {
+        KernelRunner runner("probe.cl", variant);
+        for (std::size_t k = 0; k < object_kinds().size(); ++k) {
+            const ObjectKind& kind = object_kinds()[k];
+            const std::uint64_t seed = 100 + k;
+            CAPTURE(variant.name(), kind.name, seed);
+            const Scene scene = random_scene(kind, seed);
+            const ProbedHits hits = closest_hits(runner, job_words(scene), words);
+            const auto [entry, is_first] = first.try_emplace(kind.name, hits);
+            if (is_first) grazing += fmt::format(" {},", check_against_reference(scene, rays, hits));
+            CHECK(hits.objects == entry->second.objects);
+            CHECK(bits(hits.distances) == bits(entry->second.distances));
+        }
+    }
+    grazing.pop_back();
+    fmt::print("Of {} rays against each kind of object graze and differ:{}.\n", kRays, grazing);
+}
+
+TEST_CASE("of equal distances the lowest object number wins", "[kernels]") {
+    constexpr std::uint64_t kSeed = 21;
+    const Scene once = mixed_scene(kSeed);
+    Scene twice = empty_scene();  // every object and, next to it, the same again
+    const auto doubled = [](const auto& objects, auto& to) {
+        for (const auto& object : objects) to.insert(to.end(), 2, object);
+    };
+    doubled(once.spheres, twice.spheres);
+    doubled(once.planes, twice.planes);
+    doubled(once.polygons, twice.polygons);
+    doubled(once.cones, twice.cones);
+    const std::vector<float> rays = ray_words(random_rays(22, 1600));
+    const std::vector<int> single = object_numbers(once), numbers = object_numbers(twice);
+    for (const std::uint32_t lanes : {1u, 16u}) {
+        KernelRunner runner("probe.cl", {lanes, true});
+        const ProbedHits expected = closest_hits(runner, job_words(once), rays);
+        const ProbedHits hits = closest_hits(runner, job_words(twice), rays);
+        CHECK(bits(hits.distances) == bits(expected.distances));
+        for (std::size_t i = 0; i < hits.objects.size(); ++i) {
+            CAPTURE(kSeed, lanes, i);
+            REQUIRE((hits.objects[i] == kNoObject) == (expected.objects[i] == kNoObject));
+            if (hits.objects[i] != kNoObject) CHECK(numbers[hits.objects[i]] == 2 * single[expected.objects[i]]);
+        }
+    }
+}
+
+TEST_CASE("a hit counts only nearer than the ray's limit", "[kernels]") {
+    constexpr std::uint64_t kSeed = 31;
+    const std::vector<std::uint32_t> job = job_words(mixed_scene(kSeed));
+    std::vector<float> rays = ray_words(random_rays(32, 1600));
+    for (const std::uint32_t lanes : {1u, 16u}) {
+        KernelRunner runner("probe.cl", {lanes, true});
+        const ProbedHits hits = closest_hits(runner, job, rays);
+        std::vector<float> up_to_hit = rays, beyond_hit = rays;
+        for (std::size_t i = 0; i < hits.distances.size(); ++i) {
+            up_to_hit[7 * i + 6] = hits.distances[i];
+            beyond_hit[7 * i + 6] = std::nextafter(hits.distances[i], kFarLimit);
+        }
+        CAPTURE(kSeed, lanes);
+        CHECK(closest_hits(runner, job, beyond_hit).objects == hits.objects);
+        const ProbedHits stopped = closest_hits(runner, job, up_to_hit);
+        CHECK(stopped.objects == std::vector<std::uint32_t>(hits.objects.size(), kNoObject));
+        CHECK(bits(stopped.distances) == bits(hits.distances));
+        const ProbedHits without_ray = closest_hits(runner, job, ray_words(random_rays(32, 1600), 0));
+        CHECK(without_ray.objects == stopped.objects);
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,131 @@
+// What the kernels find at a hit, against the reference: place, normals, side, colour.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kernels/agreement.hpp"
+#include "kernels/probe.hpp"
+#include "kernels/random_scene.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kRays = 4'000;
+
+constexpr double kPlaceLimit = 1e-6;    // of the scene's extent, as the distance of a hit
+constexpr double kColourLimit = 1e-7;   // as the words hold it
+constexpr double kMostGrazing = 0.002;  // edges and outlines as for hits, and the sides of checker squares
+
+Found reference_place(const Scene& scene, const reference::Ray& ray) {
+    const auto hit = reference::closest_hit(scene, ray);
+    if (!hit) return {-1};
+    Found found{static_cast<double>(hit->object), hit->leaving ? 1.0 : 0.0};
+    append(found, hit->point);
+    append(found, hit->geometric);
+    append(found, hit->shading);
+    append(found, hit->colour);
+    return found;
+}
+
+// 1 over the smallest radius of curvature there: that of a cone goes to 0 at its apex, the spheres' are 0.2 or more,
+// and the normals of the patches turn no faster than on such a sphere.
+double curvature(const Scene& scene, std::size_t object, const Vec3& point) {
+    const std::size_t first_cone = scene.object_count() - scene.cones.size();
+    if (object < first_cone) return 5;
+    const Cone& cone = scene.cones[object - first_cone];
+    const Vec3 along = cone.apex - cone.base;
+    const double share = (point - cone.base).dot(along) / along.length2();  // of the way from base to apex
+    const double radius = std::abs(cone.base_radius + share * (cone.apex_radius - cone.base_radius));
+    return std::max(5.0, 1 / radius);
+}
+
+// A normal turns by the error of the place over the radius of curvature.
+Found limits_of(const Scene& scene, std::size_t object, const Vec3& point) {
+    const double place = kPlaceLimit * scene_extent(scene);
+    Found limits{0, 0};
+    limits.insert(limits.end(), 3, place);
+    limits.insert(limits.end(), 6, place * curvature(scene, object, point));
+    limits.insert(limits.end(), 3, kColourLimit);
+    return limits;
+}
+
+std::size_t check_against_reference(const Scene& scene, const std::vector<reference::Ray>& rays, const ProbedHits& hits,
+                                    const ProbedPlaces& places) {
+    const std::vector<int> numbers = object_numbers(scene);
+    const auto find = [&](const reference::Ray& ray) { return reference_place(scene, ray); };
+    Agreement agreement{.reach = kPlaceLimit * scene_extent(scene)};
+    std::size_t leaving = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (hits.objects[i] == kNoObject) continue;
+        const int object = numbers[hits.objects[i]];
+        Found found{double(object), double(places.leaving[i])};
+        for (const auto which :
+             {ProbedPlaces::kPoint, ProbedPlaces::kGeometric, ProbedPlaces::kNormal, ProbedPlaces::kColour})
+            append(found, places.vector(i, which));
+        CAPTURE(i, hits.objects[i], hits.distances[i]);
+        const Found limits = limits_of(scene, static_cast<std::size_t>(object), places.vector(i, ProbedPlaces::kPoint));
+        CHECK(agreement.accepts(find, rays[i], found, limits));
+        leaving += places.leaving[i];
+    }
+    CHECK(leaving > agreement.rays / 50);  // both sides are seen
+    CHECK(static_cast<double>(agreement.grazing) <= kMostGrazing * static_cast<double>(agreement.rays));
+    return agreement.grazing;
+}
+
+// P+ = P + margin G and P- = P - margin G, rounded once; the margin is 2^-20 of the largest coordinate of P or the
+// scene.
+void check_starts(const Scene& scene, const ProbedHits& hits, const ProbedPlaces& places) {
+    const auto extent = static_cast<float>(scene_extent(scene));
+    for (std::size_t i = 0; i < hits.objects.size(); ++i) {
+        if (hits.objects[i] == kNoObject) continue;
+        const Vec3 point = places.vector(i, ProbedPlaces::kPoint), normal = places.vector(i, ProbedPlaces::kGeometric);
+        float largest = extent;
+        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(static_cast<float>(point[axis])));
+        for (int axis = 0; axis < 3; ++axis) {
+            const float p = static_cast<float>(point[axis]), g = static_cast<float>(normal[axis]),
+                        margin = 0x1p-20F * largest;
+            CAPTURE(i, axis);
+            CHECK(places.vector(i, ProbedPlaces::kOuter)[axis] == std::fma(g, margin, p));
+            CHECK(places.vector(i, ProbedPlaces::kInner)[axis] == std::fma(g, -margin, p));
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("places, normals, sides and colours agree with the reference, with the same bits however they are built",
+          "[kernels]") {
+    const std::vector<reference::Ray> rays = random_rays(41, kRays);
+    const std::vector<float> words = ray_words(rays);
+    std::map<std::string, ProbedPlaces> first;
+    std::string grazing;
+    for (const Variant& variant : variants()) {
+        KernelRunner runner("probe.cl", variant);
+        for (std::size_t k = 0; k < object_kinds().size(); ++k) {
+            const ObjectKind& kind = object_kinds()[k];
+            const std::uint64_t seed = 200 + k;
+            CAPTURE(variant.name(), kind.name, seed);
+            const Scene scene = random_scene(kind, seed);
+            const std::vector<std::uint32_t> job = job_words(scene);
+            const ProbedPlaces places = find_places(runner, job, words);
+            const auto [entry, is_first] = first.try_emplace(kind.name, places);
+            if (is_first) {
+                const ProbedHits hits = closest_hits(runner, job, words);
+                grazing += fmt::format(" {},", check_against_reference(scene, rays, hits, places));
+                check_starts(scene, hits, places);
+            }
+            CHECK(places.leaving == entry->second.leaving);
+            CHECK(bits(places.places) == bits(entry->second.places));
+        }
+    }
+    grazing.pop_back();
+    fmt::print("Of {} places on each kind of object differ by more than the limits, at edges:{}.\n", kRays, grazing);
+}
+
+}  // namespace raya

@@ -1,0 +1,212 @@
+// One step of the kernels' walk through a ray tree against the reference's formulas: light, reflection, refraction,
+// counts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "kernels/agreement.hpp"
+#include "kernels/probe.hpp"
+#include "kernels/random_scene.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kRays = 4'000;
+constexpr std::uint64_t kSceneSeed = 51, kRaySeed = 52;
+constexpr double kWeight = 0.5;  // of the rays that probe.cl shades
+constexpr std::uint32_t kLastLevel = 8;
+
+constexpr double kPlaceLimit = 1e-6;  // of the scene's extent, as in test_places.cpp
+// A direction turns by twice what the normal does under reflection, by up to 1.5 times under refraction; the normal
+// turns by the error of the place over the radius of curvature, 0.2 or more except near the tips of cones.
+constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
+// A highlight's power multiplies that by its exponent, 100 at most, and by Ks and the lights' weights, 0.1 in all.
+constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
+constexpr double kWeightLimit = 1e-7;
+constexpr double kMostGrazing = 0.01;  // edges as for hits, edges of shadows, tips of cones, critical angles
+
+void append_ray(Found& found, const ProbedRay& ray) {
+    append(found, ray.origin);
+    append(found, ray.direction);
+    found.push_back(ray.weight);
+}
+
+// A step in this order: object, shadow rays, shadow hits, reflected rays, refracted rays, sum, then the reflected and
+// the refracted ray where they were made. A miss has object and sum alone.
+constexpr std::size_t kWholeNumbers = 5, kSumAt = 5, kRaysAt = 8, kRayNumbers = 7;
+
+Found limits_for(const Found& found, double extent) {
+    Found limits(kWholeNumbers, 0);
+    limits.insert(limits.end(), 3, kSumLimit);
+    for (std::size_t at = kRaysAt; at < found.size(); at += kRayNumbers) {
+        limits.insert(limits.end(), 3, kPlaceLimit * extent);
+        limits.insert(limits.end(), 3, kDirectionLimit);
+        limits.push_back(kWeightLimit);
+    }
+    return found.size() > kSumAt ? limits : Found(found.size(), kWeightLimit);
+}
+
+struct Lit {
+    Colour sum;
+    int shadow_rays = 0, shadow_hits = 0;
+};
+
+Lit reference_light(const Scene& scene, const reference::Hit& hit, const Vec3& start, const Vec3& mirror) {
+    const Surface& look = scene.surfaces[static_cast<std::size_t>(hit.surface)];
+    Lit lit{ambient_intensity(scene) * look.diffuse * hit.colour};
+    for (const Light& light : scene.lights) {
+        const Vec3 arm = light.position - start, to_light = arm.normalized();
+        if (hit.shading.dot(to_light) <= 0) continue;
+        ++lit.shadow_rays;
+        if (reference::closest_hit(scene, {start, to_light}, arm.length())) {
+            ++lit.shadow_hits;
+            continue;
+        }
+        const double gloss = look.specular * std::pow(std::max(0.0, mirror.dot(to_light)), look.shine);
+        const bool shines = look.specular > 0 && mirror.dot(to_light) > 0;
+        lit.sum += light_colour(scene, light) *
+                   (look.diffuse * hit.shading.dot(to_light) * hit.colour + Colour(shines ? gloss : 0.0));
+    }
+    return lit;
+}
+
+Found reference_step(const Scene& scene, const reference::Ray& ray) {
+    const auto hit = reference::closest_hit(scene, ray);
+    Found found{hit ? static_cast<double>(hit->object) : -1.0};
+    if (!hit) {
+        append(found, kWeight * scene.background);
+        return found;
+    }
+    const Surface& look = scene.surfaces[static_cast<std::size_t>(hit->surface)];
+    double largest = scene_extent(scene);
+    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(hit->point[axis]));
+    const Vec3 aside = 0x1p-20 * largest * hit->geometric;
+    const Vec3 mirror = reference::reflected_direction(ray.direction, hit->shading);
+    const double e = hit->leaving ? look.refraction : 1 / look.refraction;
+    std::optional<Vec3> through;
+    if (look.transmittance > 0) through = reference::refracted_direction(ray.direction, hit->shading, e);
+    const double share = look.specular + (look.transmittance > 0 && !through ? look.transmittance : 0);
+    const Lit lit = reference_light(scene, *hit, hit->point + aside, mirror);
+    for (const double whole :
+         {double(lit.shadow_rays), double(lit.shadow_hits), double(share > 0), double(through.has_value())})
+        found.push_back(whole);
+    append(found, kWeight * lit.sum);
+    if (share > 0) append_ray(found, ProbedRay{hit->point + aside, mirror, kWeight * share});
+    if (through) append_ray(found, ProbedRay{hit->point - aside, *through, kWeight * look.transmittance});
+    return found;
+}
+
+Found probed_step(const ProbedSteps& steps, std::size_t ray, int object) {
+    Found found{static_cast<double>(object)};
+    if (object < 0) {
+        append(found, steps.sum(ray));
+        return found;
+    }
+    const bool reflected = steps.events(ray, RAYA_REFLECTED) != 0, refracted = steps.events(ray, RAYA_REFRACTED) != 0;
+    for (const int kind : {RAYA_SHADOW, RAYA_SHADOW_HITS, RAYA_REFLECTED, RAYA_REFRACTED})
+        found.push_back(steps.events(ray, static_cast<std::size_t>(kind)));
+    append(found, steps.sum(ray));
+    if (reflected) append_ray(found, steps.followed(ray));
+    if (refracted) append_ray(found, reflected ? steps.waiting(ray) : steps.followed(ray));
+    return found;
+}
+
+// Polygons of the job: patches count once for each of their triangles.
+std::size_t face_count(const Scene& scene) {
+    return object_numbers(scene).size() - (scene.object_count() - scene.polygons.size());
+}
+
+std::size_t at(int kind) { return static_cast<std::size_t>(kind); }
+
+// What the counters and the state of the walk must say of one step from `level`.
+void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps, std::size_t ray, bool hit,
+                 std::uint32_t level) {
+    const bool reflected = steps.events(ray, at(RAYA_REFLECTED)) != 0,
+               refracted = steps.events(ray, at(RAYA_REFRACTED)) != 0;
+    const std::uint32_t shadow = steps.events(ray, at(RAYA_SHADOW));
+    const std::uint32_t lit = shadow - steps.events(ray, at(RAYA_SHADOW_HITS));
+    CHECK(steps.walking(ray) == (reflected || refracted));
+    CHECK(steps.level(ray) == (reflected || refracted ? level + 1 : level));
+    CHECK(steps.waits(ray) == (reflected && refracted ? 1u << level : 0u));
+    CHECK(steps.events(ray, at(RAYA_PRIMARY)) == 0);
+    CHECK(steps.events(ray, at(RAYA_PRIMARY_HITS)) == (hit && level == 0 ? 1u : 0u));
+    CHECK(steps.events(ray, at(RAYA_SHADED)) == (hit ? 1u : 0u));
+    CHECK(steps.events(ray, at(RAYA_LIT)) == lit);
+    CHECK(steps.events(ray, at(RAYA_HIGHLIGHTS)) <= lit);
+    CHECK(steps.events(ray, at(RAYA_SPHERE_TESTS)) == shadow * scene.spheres.size());
+    CHECK(steps.events(ray, at(RAYA_PLANE_TESTS)) == shadow * scene.planes.size());
+    CHECK(steps.events(ray, at(RAYA_POLYGON_TESTS)) == shadow * faces);
+    CHECK(steps.events(ray, at(RAYA_CONE_TESTS)) == shadow * scene.cones.size());
+}
+
+}  // namespace
+
+TEST_CASE("a step of the walk agrees with the reference's formulas", "[kernels]") {
+    const Scene scene = mixed_scene(kSceneSeed);
+    const std::vector<reference::Ray> rays = random_rays(kRaySeed, kRays);
+    const std::vector<int> numbers = object_numbers(scene);
+    const std::size_t faces = face_count(scene);
+    KernelRunner runner("probe.cl", variants().front());
+    const ProbedHits hits = closest_hits(runner, job_words(scene), ray_words(rays));
+    const ProbedSteps steps = shade_once(runner, job_words(scene), ray_words(rays), 0);
+    const auto find = [&](const reference::Ray& ray) { return reference_step(scene, ray); };
+    Agreement agreement{.reach = kPlaceLimit * scene_extent(scene)};
+    int both = 0, total = 0;
+    for (std::size_t i = 0; i < kRays; ++i) {
+        CAPTURE(kSceneSeed, kRaySeed, i, hits.objects[i]);
+        const bool hit = hits.objects[i] != kNoObject;
+        const Found found = probed_step(steps, i, hit ? numbers[hits.objects[i]] : -1);
+        CAPTURE(found);
+        CHECK(agreement.accepts(find, rays[i], found, limits_for(found, scene_extent(scene))));
+        check_state(scene, faces, steps, i, hit, 0);
+        both += steps.waits(i) != 0;
+        total += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
+    }
+    fmt::print("Of {} shaded rays differ by more than the limits, at edges and tips: {}.\n", kRays, agreement.grazing);
+    CHECK(static_cast<double>(agreement.grazing) <= kMostGrazing * kRays);
+    CHECK(both > 200);  // reflected and refracted
+    CHECK(total > 50);  // totally reflected: a weight of Ks + T = 0.95
+}
+
+TEST_CASE("a step at a deeper level differs in its level alone, and the last level makes no ray", "[kernels]") {
+    const Scene scene = mixed_scene(kSceneSeed);
+    const std::vector<std::uint32_t> job = job_words(scene);
+    const std::vector<float> rays = ray_words(random_rays(kRaySeed, kRays));
+    const std::size_t faces = face_count(scene);
+    KernelRunner runner("probe.cl", variants().front());
+    const ProbedSteps first = shade_once(runner, job, rays, 0), deeper = shade_once(runner, job, rays, 5);
+    const ProbedSteps last = shade_once(runner, job, rays, kLastLevel);
+    CHECK(bits(deeper.numbers) == bits(first.numbers));
+    for (std::size_t i = 0; i < kRays; ++i) {
+        CAPTURE(kSceneSeed, kRaySeed, i);
+        check_state(scene, faces, deeper, i, first.events(i, at(RAYA_SHADED)) != 0, 5);
+        CHECK_FALSE(last.walking(i));
+        CHECK(last.waits(i) == 0);
+        CHECK(last.events(i, at(RAYA_REFLECTED)) + last.events(i, at(RAYA_REFRACTED)) == 0);
+        CHECK(last.sum(i) == first.sum(i));
+    }
+}
+
+TEST_CASE("a step gives the same bits however it is built", "[kernels]") {
+    const std::vector<std::uint32_t> job = job_words(mixed_scene(kSceneSeed));
+    const std::vector<float> rays = ray_words(random_rays(kRaySeed, kRays));
+    std::map<std::uint32_t, ProbedSteps> first;  // by level
+    for (const Variant& variant : variants()) {
+        KernelRunner runner("probe.cl", variant);
+        for (const std::uint32_t level : {0u, 5u, kLastLevel}) {
+            CAPTURE(variant.name(), level, kSceneSeed, kRaySeed);
+            const ProbedSteps steps = shade_once(runner, job, rays, level);
+            const auto entry = first.try_emplace(level, steps).first;
+            CHECK(steps.state == entry->second.state);
+            CHECK(bits(steps.numbers) == bits(entry->second.numbers));
+        }
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,29 @@
+// Plain text tables.
+#include <catch2/catch.hpp>
+
+#include "report/table.hpp"
+
+using namespace raya;
+
+TEST_CASE("columns stand under their headers, words to the left and numbers to the right", "[report]") {
+    CHECK(text_table({{"label", "launches", "ns"}, {"trace", "12", "345678"}, {"bus.gather", "1", "90"}}) ==
+          "label       launches      ns\n"
+          "trace             12  345678\n"
+          "bus.gather         1      90\n");
+}
+
+TEST_CASE("one cell that is no number makes a column of words", "[report]") {
+    CHECK(text_table({{"name", "time"}, {"a", "1.5 ms"}, {"b", "none"}}) ==
+          "name  time\n"
+          "a     1.5 ms\n"
+          "b     none\n");
+}
+
+TEST_CASE("short rows, wide headers and the header alone", "[report]") {
+    CHECK(text_table({{"a", "b"}, {"long word"}, {"x", "7"}}) ==
+          "a          b\n"
+          "long word\n"
+          "x          7\n");
+    CHECK(text_table({{"header"}, {"1"}}) == "header\n     1\n");
+    CHECK(text_table({{"a", "b"}}) == "a  b\n");
+}

@@ -1,0 +1,79 @@
+// The kernels' -D values and what is refused.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "ring/kernel_options.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+DeviceInfo a_device(const std::string& type, std::uint32_t width, std::size_t max_group) {
+    DeviceInfo device;
+    device.name = "a device";
+    device.type = type;
+    device.native_float_width = width;
+    device.max_group_size = max_group;
+    return device;
+}
+
+const DeviceInfo kCpu = a_device("cpu", 8, 4096);
+
+}  // namespace
+
+TEST_CASE("every tunable of the kernels is given a value", "[ring]") {
+    const KernelOptions plain;
+    CHECK(build_options(plain, kCpu) ==
+          std::vector<std::string>{"-cl-std=CL1.2", "-DRAYA_LANES=1", "-DRAYA_GROUP=1", "-DRAYA_BOUNCES=8",
+                                   "-DRAYA_WORDS_LOCAL=1", "-DRAYA_POLYGONS=1", "-DRAYA_PATCHES=1", "-DRAYA_CONES=1"});
+    const KernelOptions other{16, 64, 31, false, false, false, false};
+    CHECK(build_options(other, kCpu) ==
+          std::vector<std::string>{"-cl-std=CL1.2", "-DRAYA_LANES=16", "-DRAYA_GROUP=64", "-DRAYA_BOUNCES=31",
+                                   "-DRAYA_WORDS_LOCAL=0", "-DRAYA_POLYGONS=0", "-DRAYA_PATCHES=0", "-DRAYA_CONES=0"});
+}
+
+TEST_CASE("division is asked to be correctly rounded only where the device offers it", "[ring]") {
+    const std::string option = "-cl-fp32-correctly-rounded-divide-sqrt";
+    DeviceInfo device = kCpu;
+    const auto asked = [&] {
+        const auto options = build_options({}, device);
+        return std::count(options.begin(), options.end(), option);
+    };
+    CHECK(asked() == 0);
+    device.correctly_rounded_divide_sqrt = true;
+    CHECK(asked() == 1);
+}
+
+TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
+    const auto refuses = [](const KernelOptions& options, const DeviceInfo& device, const auto& message) {
+        CHECK_THROWS_AS(build_options(options, device), UserError);
+        CHECK_THROWS_WITH(build_options(options, device), message);
+    };
+    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) CHECK_NOTHROW(build_options({.lanes = lanes}, kCpu));
+    for (const std::uint32_t lanes : {0u, 2u, 3u, 17u, 32u})
+        refuses({.lanes = lanes}, kCpu,
+                Contains("--lanes " + std::to_string(lanes) + ":") && Contains("1, 4, 8 or 16"));
+    CHECK_NOTHROW(build_options({.group_size = 64}, kCpu));
+    for (const std::uint32_t group : {0u, 65u})
+        refuses({.group_size = group}, kCpu, Contains("--group " + std::to_string(group) + ":") && Contains("1..64"));
+    const DeviceInfo small = a_device("gpu", 1, 16);
+    CHECK_NOTHROW(build_options({.group_size = 16}, small));
+    refuses({.group_size = 17}, small, Contains("--group 17:") && Contains("1..16") && Contains("a device"));
+    CHECK_NOTHROW(build_options({.bounces = 0}, kCpu));
+    CHECK_NOTHROW(build_options({.bounces = 31}, kCpu));
+    refuses({.bounces = 32}, kCpu, Contains("--bounces 32:") && Contains("0..31"));
+}
+
+TEST_CASE("lanes and group size follow the device", "[ring]") {
+    CHECK(default_lanes(a_device("cpu", 16, 4096)) == 16);
+    CHECK(default_lanes(a_device("cpu", 8, 4096)) == 8);
+    CHECK(default_lanes(a_device("cpu", 2, 4096)) == 4);  // a narrow CPU gains from more work between branches
+    CHECK(default_lanes(a_device("gpu", 1, 1024)) == 1);
+    CHECK(default_group_size(a_device("cpu", 16, 4096)) == 1);
+    CHECK(default_group_size(a_device("gpu", 1, 1024)) == 32);
+    CHECK(default_group_size(a_device("gpu", 1, 8)) == 8);
+}

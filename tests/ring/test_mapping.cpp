@@ -1,0 +1,188 @@
+// Every pixel has one owner, the formulas both ways agree, and neighbours lie where the paper says.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "ring/mapping.hpp"
+#include "scene/split_mix.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+std::uint32_t below(SplitMix& random, std::uint64_t end) { return static_cast<std::uint32_t>(random.next() % end); }
+
+/// The owner as the words of mapping.h define it, in signed numbers and without its formulas' shortcuts.
+std::int64_t defined_owner(const raya_mapping& m, std::int64_t row, std::int64_t column) {
+    const std::int64_t width = m.width, height = m.height, pes = m.pes;
+    std::int64_t slot = (column - row * m.offset) % width;
+    if (slot < 0) slot += width;
+    if (m.fold == RAYA_FOLD_CYCLIC) {
+        if (pes <= width) return slot % pes;
+        std::int64_t sharers = 0;  // of slot, slot + W, slot + 2 W, ...
+        while (slot + sharers * width < pes && sharers < height) ++sharers;
+        return slot + row % sharers * width;
+    }
+    const std::int64_t first = slot * pes / width, end = (slot + 1) * pes / width;
+    return pes <= width ? first : first + row * (end - first) / height;
+}
+
+/// A mapping of a small image, with every relation of P to W and H now and then.
+raya_mapping random_mapping(SplitMix& random) {
+    const std::uint32_t width = random.next() % 8 == 0 ? 1 : 1 + below(random, 40);
+    const std::uint32_t height = random.next() % 8 == 0 ? 1 : 1 + below(random, 40);
+    const std::uint32_t pixels = width * height;
+    const std::uint32_t choices[] = {1 + below(random, width),  width,
+                                     1 + below(random, pixels), pixels,
+                                     std::max(1u, pixels - 1),  std::min(pixels, width + 1)};
+    const std::uint32_t fold = random.next() % 2 ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC;
+    return {width, height, choices[below(random, 6)], below(random, width), fold};
+}
+
+/// How many pixels, of all that the PEs' shares list, lie outside the image, come twice, or have another owner.
+std::uint32_t strays(const raya_mapping& m, std::vector<std::uint32_t>& sizes) {
+    std::vector<bool> seen(std::size_t{m.width} * m.height);
+    std::uint32_t wrong = 0;
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const raya_share share = raya_share_of(m, pe);
+        sizes.push_back(raya_share_size(share));
+        for (std::uint32_t k = 0; k < sizes.back(); ++k) {
+            const raya_pixel pixel = raya_pixel_of(m, share, k);
+            const bool inside = pixel.row < m.height && pixel.column < m.width;
+            const std::size_t at = std::size_t{pixel.row} * m.width + pixel.column;
+            const bool good = inside && !seen[at] && raya_owner(m, pixel.row, pixel.column) == pe &&
+                              defined_owner(m, pixel.row, pixel.column) == pe;
+            if (inside) seen[at] = true;
+            wrong += !good;
+        }
+    }
+    return wrong + static_cast<std::uint32_t>(std::count(seen.begin(), seen.end(), false));
+}
+
+std::uint32_t ceil_ratio(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
+
+}  // namespace
+
+TEST_CASE("every pixel has exactly one owner, and shares are as even as the fold allows", "[mapping]") {
+    constexpr std::uint64_t kSeed = 1;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 600; ++i) {
+        const raya_mapping m = random_mapping(random);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.offset, m.fold);
+        std::vector<std::uint32_t> sizes;
+        CHECK(strays(m, sizes) == 0);
+        const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+        CHECK(largest_share(m) == *most);
+        if (m.pes <= m.width) {  // PEs own whole slots, of which they have W / P rounded down or up
+            CHECK(*least == m.width / m.pes * m.height);
+            CHECK(*most == ceil_ratio(m.width, m.pes) * m.height);
+        } else {  // P / W PEs, rounded down or up, share the H pixels of a slot
+            CHECK(*least >= m.height / ceil_ratio(m.pes, m.width));
+            CHECK(*most == ceil_ratio(m.height, m.pes / m.width));
+        }
+    }
+}
+
+TEST_CASE("with a PE for each column the cyclic mapping is the paper's", "[mapping]") {
+    constexpr std::uint64_t kSeed = 2;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 100; ++i) {
+        raya_mapping m = random_mapping(random);
+        if (i == 0) m = {256, 256, 256, 16, RAYA_FOLD_CYCLIC};
+        m.pes = m.width;
+        const std::uint32_t w = m.width, p = m.offset;
+        CAPTURE(kSeed, i, w, m.height, p, m.fold);
+        std::uint32_t wrong = 0;
+        for (std::uint32_t j = 0; j < m.height; ++j)
+            for (std::uint32_t pe = 0; pe < w; ++pe) {
+                const std::uint32_t x = (j * p + pe) % w;  // PE i owns the pixels (j, (j p + i) mod W)
+                wrong += raya_owner(m, j, x) != pe;
+                wrong += x > 0 && raya_owner(m, j, x - 1) != (pe + w - 1) % w;
+                wrong += x + 1 < w && raya_owner(m, j, x + 1) != (pe + 1) % w;
+                wrong += j > 0 && raya_owner(m, j - 1, x) != (pe + p) % w;
+                wrong += j + 1 < m.height && raya_owner(m, j + 1, x) != (pe + w - p) % w;
+            }
+        CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("with p = n and P = n x n every n x n block has one pixel of each PE", "[mapping]") {
+    const raya_mapping m{256, 256, 256, 16, RAYA_FOLD_CYCLIC};
+    for (const std::uint32_t top : {0u, 7u, 240u})
+        for (const std::uint32_t left : {0u, 100u, 240u}) {
+            std::vector<int> pixels(m.pes, 0);
+            for (std::uint32_t j = 0; j < 16; ++j)
+                for (std::uint32_t x = 0; x < 16; ++x) ++pixels[raya_owner(m, top + j, left + x)];
+            CAPTURE(top, left);
+            CHECK(pixels == std::vector<int>(m.pes, 1));
+        }
+}
+
+TEST_CASE("block folds own runs: of slots where P < W, of a slot's rows where P > W", "[mapping]") {
+    const raya_mapping few{10, 3, 4, 0, RAYA_FOLD_BLOCK};  // floor(c 4 / 10)
+    std::vector<std::uint32_t> owners;
+    for (std::uint32_t x = 0; x < 10; ++x) owners.push_back(raya_owner(few, 2, x));
+    CHECK(owners == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 2, 3, 3});
+    const raya_mapping many{2, 5, 5, 0, RAYA_FOLD_BLOCK};  // slot 0 has the PEs 0 and 1, slot 1 the PEs 2, 3 and 4
+    owners.clear();
+    for (std::uint32_t x = 0; x < 2; ++x)
+        for (std::uint32_t j = 0; j < 5; ++j) owners.push_back(raya_owner(many, j, x));
+    CHECK(owners == std::vector<std::uint32_t>{0, 0, 0, 1, 1, 2, 2, 3, 3, 4});
+}
+
+TEST_CASE("the largest images and arrays keep to the definition", "[mapping]") {
+    constexpr std::uint64_t kSeed = 3;
+    constexpr std::uint32_t kSide = kLargestSide, kPixels = kSide * kSide;
+    SplitMix random(kSeed);
+    for (const std::uint32_t pes : {1u, 12'345u, kSide, kSide + 1, 1'000'003u, kPixels / 2 + 1, kPixels - 1, kPixels})
+        for (const std::uint32_t offset : {0u, 1u, 128u, kSide - 1})
+            for (const std::uint32_t fold : {RAYA_FOLD_CYCLIC, RAYA_FOLD_BLOCK}) {
+                const raya_mapping m{kSide, kSide, pes, offset, fold};
+                CAPTURE(kSeed, pes, offset, fold);
+                std::uint32_t wrong = 0;
+                for (int i = 0; i < 100; ++i) {
+                    const std::uint32_t edge = i < 4 ? kSide - 1 : below(random, kSide);  // the last row and column too
+                    const raya_pixel pixel{i % 2 ? edge : below(random, kSide), i % 2 ? below(random, kSide) : edge};
+                    const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
+                    const raya_share s = raya_share_of(m, owner);
+                    const std::uint32_t slot = (pixel.column + kSide - pixel.row * offset % kSide) % kSide;
+                    const std::uint32_t k =
+                        (pixel.row - s.first_row) / s.row_step * s.slots + (slot - s.first_slot) / s.slot_step;
+                    const raya_pixel back = raya_pixel_of(m, s, k);
+                    wrong += defined_owner(m, pixel.row, pixel.column) != owner || k >= raya_share_size(s) ||
+                             back.row != pixel.row || back.column != pixel.column;
+                }
+                CHECK(wrong == 0);
+                if (pes > 2'000'000 || offset > 1) continue;
+                std::uint64_t sum = 0;
+                for (std::uint32_t pe = 0; pe < pes; ++pe) sum += raya_share_size(raya_share_of(m, pe));
+                CHECK(sum == kPixels);
+            }
+}
+
+TEST_CASE("mappings by name, and what is refused", "[mapping]") {
+    const raya_mapping m = make_mapping("cyclic", 320, 200, 64, 16, "block");
+    CHECK((m.width == 320 && m.height == 200 && m.pes == 64 && m.offset == 16 && m.fold == RAYA_FOLD_BLOCK));
+    CHECK(make_mapping("cyclic", 320, 200, 64'000, 319, "cyclic").fold == RAYA_FOLD_CYCLIC);
+    CHECK(make_mapping("column", 320, 200, 64, 16, "cyclic").offset == 0);
+    CHECK(make_mapping("cyclic", 16'384, 16'384, 268'435'456, 0, "cyclic").pes == 268'435'456);
+
+    const auto refuses = [](const std::string& name, std::uint32_t width, std::uint32_t height, std::uint32_t pes,
+                            std::uint32_t offset, const std::string& fold, const auto& message) {
+        CHECK_THROWS_AS(make_mapping(name, width, height, pes, offset, fold), UserError);
+        CHECK_THROWS_WITH(make_mapping(name, width, height, pes, offset, fold), message);
+    };
+    refuses("spiral", 8, 8, 8, 0, "cyclic", Contains("--mapping spiral") && Contains("cyclic, column"));
+    refuses("cyclic", 8, 8, 8, 0, "none", Contains("--fold none") && Contains("cyclic or block"));
+    refuses("cyclic", 0, 8, 1, 0, "cyclic", Contains("--size 0x8") && Contains("1..16384"));
+    refuses("cyclic", 8, 0, 1, 0, "cyclic", Contains("--size 8x0") && Contains("1..16384"));
+    refuses("cyclic", 16'385, 8, 8, 0, "cyclic", Contains("--size 16385x8"));
+    refuses("cyclic", 65'536, 65'536, 8, 0, "cyclic", Contains("--size 65536x65536"));  // W H overflows 32 bits
+    refuses("cyclic", 8, 6, 0, 0, "cyclic", Contains("--pes 0") && Contains("1..48"));
+    refuses("cyclic", 8, 6, 49, 0, "cyclic", Contains("--pes 49") && Contains("1..48"));
+    refuses("cyclic", 8, 6, 8, 8, "cyclic", Contains("--offset 8") && Contains("0..7"));
+}

@@ -1,0 +1,272 @@
+// Jobs read back: every word is accounted for and says what the scene says, to fp32.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reference/reference.hpp"
+#include "scene/fp32.hpp"
+#include "scene/nff_reader.hpp"
+#include "scene/packed_scene.hpp"
+#include "scene/polygon_plane.hpp"
+#include "scene/triangulate.hpp"
+
+using namespace raya;
+
+namespace {
+
+constexpr double kRounding = 0x1p-24;  // of a number that is rounded to fp32 once
+
+// A shading normal at a corner: the origin's rounding over the shortest side, which is a hundredth of the extent here.
+constexpr double kNormalLimit = 8 * 100 * kRounding;
+
+Surface rounded(Surface s) {
+    for (double* value : {&s.diffuse, &s.specular, &s.shine, &s.transmittance, &s.refraction}) *value = fp32(*value);
+    if (s.checker) s.checker = Checker{fp32(s.checker->even), fp32(s.checker->odd), fp32(s.checker->size)};
+    s.colour = s.checker ? s.checker->even : fp32(s.colour);  // a checker's own colour is that of its even squares
+    return s;
+}
+
+struct Point2 {
+    double u, v;
+};
+Point2 flattened(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+
+/// Checks one job against its scene, record by record.
+class JobCheck {
+  public:
+    explicit JobCheck(const Scene& scene, const std::vector<std::uint32_t>& words)
+        : scene_(scene), packed_(words), limit_(8 * kRounding * scene_extent(scene)) {}
+
+    void run() {
+        for (std::size_t i = 0; i < scene_.surfaces.size(); ++i) {
+            const std::size_t at = sizeof(raya_job) / 4 + i * RAYA_SURFACE_WORDS;
+            surface_at_.push_back(static_cast<std::uint32_t>(at));
+            CHECK(packed_.surface(at) == rounded(scene_.surfaces[i]));
+        }
+        const raya_job& job = packed_.job();
+        REQUIRE(job.lights == scene_.lights.size());
+        REQUIRE(job.spheres == scene_.spheres.size());
+        REQUIRE(job.planes == scene_.planes.size());
+        REQUIRE(job.cones == scene_.cones.size());
+        for (std::size_t i = 0; i < job.lights; ++i)
+            check_light(scene_.lights[i], job.lights_at + i * RAYA_LIGHT_WORDS);
+        for (std::size_t i = 0; i < job.spheres; ++i)
+            check_sphere(scene_.spheres[i], job.spheres_at + i * RAYA_SPHERE_WORDS);
+        for (std::size_t i = 0; i < job.planes; ++i)
+            check_plane(scene_.planes[i], job.planes_at + i * RAYA_PLANE_WORDS);
+        for (std::size_t i = 0; i < job.cones; ++i) check_cone(scene_.cones[i], job.cones_at + i * RAYA_CONE_WORDS);
+        std::size_t face = 0;
+        for (const Polygon& polygon : scene_.polygons) check_faces(polygon, face);
+        CHECK(face == job.polygons);
+        CHECK(packed_.unread() == 0);
+        CHECK(packed_.shared() == 0);
+    }
+
+  private:
+    void check_surface(int surface, std::size_t at) {
+        CHECK(packed_.index(at + RAYA_OBJECT_SURFACE_AT) == surface_at_.at(static_cast<std::size_t>(surface)));
+    }
+
+    void check_light(const Light& light, std::size_t at) {
+        CHECK(packed_.vector(at + RAYA_LIGHT_POSITION) == fp32(light.position));
+        CHECK(packed_.vector(at + RAYA_LIGHT_COLOUR) == fp32(light_colour(scene_, light)));
+    }
+
+    void check_sphere(const Sphere& sphere, std::size_t at) {
+        CHECK(packed_.vector(at + RAYA_SPHERE_CENTRE) == fp32(sphere.centre));
+        CHECK(packed_.real(at + RAYA_SPHERE_SQUARE) == fp32(sphere.radius * std::abs(sphere.radius)));
+        check_surface(sphere.surface, at);
+    }
+
+    void check_plane(const Plane& plane, std::size_t at) {
+        CHECK(packed_.vector(at + RAYA_PLANE_NORMAL) == fp32(plane.normal));
+        CHECK(packed_.real(at + RAYA_PLANE_DISTANCE) == fp32(plane.distance));
+        check_surface(plane.surface, at);
+    }
+
+    void check_cone(const Cone& cone, std::size_t at) {
+        const Vec3 base = packed_.vector(at + RAYA_CONE_BASE), axis = packed_.vector(at + RAYA_CONE_AXIS);
+        const double radius = packed_.real(at + RAYA_CONE_RADIUS), height = packed_.real(at + RAYA_CONE_HEIGHT);
+        CHECK(base == fp32(cone.base));
+        CHECK(radius == fp32(std::abs(cone.base_radius)));
+        CHECK((base + height * axis - cone.apex).length() <= limit_);
+        CHECK(std::abs(radius + packed_.real(at + RAYA_CONE_SLOPE) * height - std::abs(cone.apex_radius)) <= limit_);
+        CHECK(packed_.index(at + RAYA_CONE_INSIDE) == (cone.base_radius < 0 || cone.apex_radius < 0 ? 1u : 0u));
+        check_surface(cone.surface, at);
+    }
+
+    /// The faces of one polygon from number `face` on: itself, or the triangles of a patch.
+    void check_faces(const Polygon& polygon, std::size_t& face) {
+        const Vec3 normal = newell_normal(polygon.vertices);
+        for (const std::vector<int>& corners : faces_of(polygon)) {
+            CAPTURE(face);
+            const std::size_t at = packed_.job().polygons_at + face++ * RAYA_POLYGON_WORDS;
+            CHECK(packed_.vector(at + RAYA_PLANE_NORMAL) == fp32(normal.normalized()));
+            CHECK(packed_.real(at + RAYA_PLANE_DISTANCE) == fp32(normal.normalized().dot(polygon.vertices[0])));
+            CHECK(packed_.index(at + RAYA_POLYGON_AXIS) == static_cast<std::uint32_t>(dropped_axis(normal)));
+            check_surface(polygon.surface, at);
+            REQUIRE(packed_.index(at + RAYA_POLYGON_EDGES) == corners.size());
+            check_outline(polygon, corners, packed_.index(at + RAYA_POLYGON_EDGES_AT));
+            const std::size_t normals_at = packed_.index(at + RAYA_POLYGON_NORMALS_AT);
+            REQUIRE((normals_at == 0) == polygon.normals.empty());
+            if (normals_at != 0) check_normals(polygon, corners, normals_at);
+        }
+    }
+
+    static std::vector<std::vector<int>> faces_of(const Polygon& polygon) {
+        std::vector<std::vector<int>> faces;
+        if (!polygon.normals.empty()) {
+            for (const auto& t : triangulate(polygon.vertices, newell_normal(polygon.vertices)))
+                faces.emplace_back(t.begin(), t.end());
+            return faces;
+        }
+        faces.emplace_back(polygon.vertices.size());
+        std::iota(faces[0].begin(), faces[0].end(), 0);
+        return faces;
+    }
+
+    static Vec3 vertex(const Polygon& polygon, int corner) {
+        return polygon.vertices[static_cast<std::size_t>(corner)];
+    }
+
+    /// One edge between two vertices, whichever of them is the lower one.
+    bool is_edge(Point2 a, Point2 b, std::size_t at) {
+        const double u = packed_.real(at + RAYA_EDGE_U), low = packed_.real(at + RAYA_EDGE_LOW);
+        const double high = packed_.real(at + RAYA_EDGE_HIGH), slope = packed_.real(at + RAYA_EDGE_SLOPE);
+        if (a.v > b.v) std::swap(a, b);
+        if (low != fp32(a.v) || high != fp32(b.v)) return false;
+        if (a.v == b.v) return slope == 0;  // level: no line towards larger u crosses it
+        return u == fp32(a.u) && std::abs(u + (high - low) * slope - b.u) <= limit_;
+    }
+
+    void check_outline(const Polygon& polygon, const std::vector<int>& corners, std::size_t edges_at) {
+        const int axis = dropped_axis(newell_normal(polygon.vertices));
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const Vec3 from = vertex(polygon, corners[i]), to = vertex(polygon, corners[(i + 1) % corners.size()]);
+            CAPTURE(i);
+            CHECK(is_edge(flattened(from, axis), flattened(to, axis), edges_at + i * RAYA_EDGE_WORDS));
+        }
+    }
+
+    /// At the corners of a patch's triangle the interpolated normal is the vertices' own.
+    void check_normals(const Polygon& patch, const std::vector<int>& corners, std::size_t at) {
+        const int axis = dropped_axis(newell_normal(patch.vertices));
+        const double u0 = packed_.real(at + RAYA_PATCH_ORIGIN), v0 = packed_.real(at + RAYA_PATCH_ORIGIN + 1);
+        const Vec3 n0 = packed_.vector(at + RAYA_PATCH_N0), nu = packed_.vector(at + RAYA_PATCH_NU);
+        const Vec3 nv = packed_.vector(at + RAYA_PATCH_NV);
+        for (const int corner : corners) {
+            const Point2 p = flattened(vertex(patch, corner), axis);
+            const Vec3 normal = n0 + (p.u - u0) * nu + (p.v - v0) * nv;
+            CHECK((normal - patch.normals[static_cast<std::size_t>(corner)]).length() <= kNormalLimit);
+        }
+    }
+
+    const Scene& scene_;
+    PackedScene packed_;
+    double limit_;  // a few roundings of the largest coordinate
+    std::vector<std::uint32_t> surface_at_;
+};
+
+JobSettings settings_for(std::uint32_t width, std::uint32_t height, Sampling sampling = Sampling::kCentres) {
+    JobSettings settings;
+    settings.mapping = {width, height, 5, 0, RAYA_FOLD_BLOCK};
+    settings.sampling = sampling;
+    return settings;
+}
+
+/// A quad and a triangle with normals, and a concave polygon without; one checker.
+Scene patch_scene() {
+    Scene scene;
+    scene.view.from = {0, 0, -5};
+    scene.surfaces.resize(2);
+    scene.surfaces[1].checker = Checker{{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7};
+    const Vec3 a = Vec3(0.6, 0, 0.8), b = Vec3(0, 0.6, 0.8), c = Vec3(0, 0, 1);
+    scene.polygons = {{{{0, 0, 1}, {1, 0, 1}, {1.2, 1, 1}, {0, 1, 1}}, {a, b, c, a}, 0},
+                      {{{0, 0, 2}, {2, 0, 1}, {0, 2, 1}}, {b, a, c}, 1},
+                      {{{0, 0, 3}, {3, 0, 3}, {1, 1, 3}, {0, 3, 3}}, {}, 0}};
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the jobs of all scenes decode back to them, and every word belongs to one record", "[packer]") {
+    int scenes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(RAYA_SOURCE_DIR "/scenes")) {
+        if (entry.path().extension() != ".nff") continue;
+        ++scenes;
+        CAPTURE(entry.path().filename().string());
+        const Scene scene = read_nff(entry.path());
+        const PackedJob packed = pack_job(scene, settings_for(64, 48));
+        JobCheck(scene, packed.words).run();
+        const auto is_patch = [](const Polygon& p) { return !p.normals.empty(); };
+        CHECK(packed.has_polygons == !scene.polygons.empty());
+        CHECK(packed.has_patches == std::any_of(scene.polygons.begin(), scene.polygons.end(), is_patch));
+        CHECK(packed.has_cones == !scene.cones.empty());
+    }
+    CHECK(scenes >= 6);
+}
+
+TEST_CASE("patches become triangles, polygons stay whole", "[packer]") {
+    const Scene scene = patch_scene();
+    const PackedJob packed = pack_job(scene, settings_for(8, 8));
+    JobCheck(scene, packed.words).run();
+    CHECK(PackedScene(packed.words).job().polygons == 2 + 1 + 1);
+    CHECK((packed.has_polygons && packed.has_patches && !packed.has_cones));
+    const std::size_t words = sizeof(raya_job) / 4 + 2 * RAYA_SURFACE_WORDS + 4 * RAYA_POLYGON_WORDS +
+                              (3 + 3 + 3 + 4) * RAYA_EDGE_WORDS + 3 * RAYA_PATCH_WORDS;
+    CHECK(packed.words.size() == words);
+}
+
+TEST_CASE("the header holds settings, background and sizes", "[packer]") {
+    Scene scene = patch_scene();
+    scene.background = {0.1, 0.2, 0.3};
+    JobSettings settings = settings_for(32, 24);
+    settings.mapping.offset = 7;
+    settings.bounces = 3;
+    for (std::uint32_t i = 0; i < RAYA_EVENTS; ++i) settings.cycles[i] = 100 + i;
+    raya_job job = PackedScene(pack_job(scene, settings).words).job();
+    CHECK((job.mapping.width == 32 && job.mapping.height == 24 && job.mapping.pes == 5));
+    CHECK((job.mapping.offset == 7 && job.mapping.fold == RAYA_FOLD_BLOCK));
+    CHECK(job.bounces == 3);
+    CHECK(std::equal(settings.cycles.begin(), settings.cycles.end(), job.cycles));
+    CHECK(Vec3(job.eye[0], job.eye[1], job.eye[2]) == Vec3(0, 0, -5));
+    CHECK(Vec3(job.background[0], job.background[1], job.background[2]) == fp32(scene.background));
+    CHECK(job.ambient == 1);  // without lights
+    CHECK(job.extent == 5);   // the eye is farthest out
+    scene.lights = {{{1, 2, 3}, {}}, {{4, 5, 6}, Colour(0.1, 0.2, 0.3)}};
+    scene.spheres = {{{-8, 0, 0}, -2, 0}};
+    job = PackedScene(pack_job(scene, settings).words).job();
+    CHECK(job.ambient == static_cast<float>(std::sqrt(2.0) / 4));
+    CHECK(job.extent == 10);
+}
+
+TEST_CASE("corner and steps give the reference's primary rays", "[packer]") {
+    Scene scene = patch_scene();
+    scene.view = {{3, -4, 5}, {0.5, 1, -2}, {0.1, 0.2, 1}, 50, 0, 1, 1};
+    for (const bool corners : {false, true})
+        for (const auto& [width, height] :
+             {std::pair{64u, 48u}, std::pair{1u, 7u}, std::pair{9u, 1u}, std::pair{1u, 1u}}) {
+            const Sampling sampling = corners ? Sampling::kCorners : Sampling::kCentres;
+            const raya_job job = PackedScene(pack_job(scene, settings_for(width, height, sampling)).words).job();
+            reference::Options options;
+            options.width = static_cast<int>(width);
+            options.height = static_cast<int>(height);
+            options.corners = corners;
+            const auto vector = [](const float(&from)[3]) { return Vec3(from[0], from[1], from[2]); };
+            for (std::uint32_t j = 0; j < height; ++j)
+                for (std::uint32_t x = 0; x < width; ++x) {
+                    const Vec3 through =
+                        vector(job.corner) + double(x) * vector(job.column_step) + double(j) * vector(job.row_step);
+                    const reference::Ray ray = reference::primary_ray(scene, options, x, j);
+                    CAPTURE(corners, width, height, x, j);
+                    CHECK((through.normalized() - ray.direction).length() <= 8 * kRounding);
+                    CHECK(vector(job.eye) == ray.origin);
+                }
+        }
+}
