@@ -93,7 +93,7 @@ void bench(const BenchCommand& command) {
     fmt::print("{} on {}: {} x {} pixels, {} PEs, {} bounces, {} rays; {} samples of 20 ms or more after a warm-up\n",
                scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
                settings.bounces, rows.front().rays, command.samples);
-    print_rows(rows, settings.machine.format);
+    print_rows(rows, format_name(settings.format));
     fmt::print(
         "ratio: median time of the first row over that of the row; pixels: hash of the image, checked to be the same "
         "in all rows\n");

@@ -52,9 +52,15 @@ RenderReport make_report(const RenderCommand& command, const RingSettings& setti
     RenderReport report;
     report.scene = command.render.scene;
     report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
-    report.machine = {settings.machine.name,   settings.machine.topology, command.render.mapping,
-                      command.render.fold,     settings.machine.format,   settings.mapping.pes,
-                      settings.mapping.offset, settings.bounces,          settings.machine.pe_memory_bytes.value_or(0),
+    report.machine = {settings.machine.name,
+                      settings.machine.topology,
+                      command.render.mapping,
+                      command.render.fold,
+                      format_name(settings.format),
+                      settings.mapping.pes,
+                      settings.mapping.offset,
+                      settings.bounces,
+                      settings.machine.pe_memory_bytes.value_or(0),
                       result.pe_memory.bytes()};
     report.device = {device.name,          device.platform, device.version,
                      result.build_options, result.lanes,    result.group_size};

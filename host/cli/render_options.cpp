@@ -28,7 +28,11 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--fold", o.fold, "Slots to PEs where P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
         ->capture_default_str();
-    command.add_option("--format", o.format, "Number format of the kernels: fp32")->capture_default_str();
+    command
+        .add_option("--format", o.format,
+                    "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
+                    "fraction bits, t truncates; default: the machine's, e6m15")
+        ->type_name("NAME");
     command.add_option("--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
         ->type_name("N");
     command
@@ -56,7 +60,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
 RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     RingSettings settings;
     settings.machine = machine_named(o.machine);
-    if (o.format != "fp32") throw UserError(fmt::format("--format {}: must be fp32", o.format));
+    settings.format = o.format.empty() ? settings.machine.format : parse_format(o.format);
     if (o.sampling != "centres" && o.sampling != "corners")
         throw UserError(fmt::format("--sampling {}: must be centres or corners", o.sampling));
     std::vector<std::uint32_t> size = {static_cast<std::uint32_t>(scene.view.width),

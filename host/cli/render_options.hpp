@@ -16,8 +16,8 @@ namespace raya {
 
 /// As given on the command line; what is empty follows the machine, the scene or the device.
 struct RenderOptions {
-    std::string scene, machine = "spa", size, mapping = "cyclic", fold = "cyclic", format = "fp32",
-                       sampling = "centres", device, kernel_dir;
+    std::string scene, machine = "spa", size, mapping = "cyclic", fold = "cyclic", format, sampling = "centres", device,
+                       kernel_dir;
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 

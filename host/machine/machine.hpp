@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/number_format.hpp"
 #include "shared/events.h"
 
 namespace raya {
@@ -22,7 +23,7 @@ struct Machine {
     std::uint32_t offset = 0;                      // p of the cyclic mapping
     std::optional<std::uint32_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
-    std::string format = "fp32";
+    NumberFormat format{6, 15, false};  // of a PE: e6m15, 22 bits
 };
 
 /// The machines that `--machine` knows, the default first.

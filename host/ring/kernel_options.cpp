@@ -51,6 +51,12 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
         fmt::format("-DRAYA_PATCHES={:d}", options.patches),
         fmt::format("-DRAYA_CONES={:d}", options.cones),
     };
+    if (!options.format.is_fp32()) {
+        all.push_back(fmt::format("-DRAYA_EXPONENT_BITS={}", options.format.exponent_bits));
+        all.push_back(fmt::format("-DRAYA_FRACTION_BITS={}", options.format.fraction_bits));
+        all.push_back(fmt::format("-DRAYA_TRUNCATE={:d}", options.format.truncates));
+    }
+    all.push_back(fmt::format("-DRAYA_EXACT_DIVIDE={:d}", device.correctly_rounded_divide_sqrt));
     if (device.correctly_rounded_divide_sqrt) all.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
     return all;
 }

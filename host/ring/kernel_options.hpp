@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
+#include "machine/number_format.hpp"
 
 namespace raya {
 
@@ -13,6 +14,7 @@ struct KernelOptions {
     std::uint32_t lanes = 1;       // V
     std::uint32_t group_size = 1;  // L
     std::uint32_t bounces = 8;
+    NumberFormat format;
     bool words_local = true;  // PEs take the broadcast words into local memory
     bool polygons = true, patches = true, cones = true;
 };

@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 JobSettings job_settings(const RingSettings& settings) {
-    return {settings.mapping, settings.sampling, settings.bounces, cycles_of_events()};
+    return {settings.mapping, settings.sampling, settings.bounces, cycles_of_events(), settings.format};
 }
 
 // The settings with lanes and group size chosen, refused before anything is packed or taken if the kernels cannot be
@@ -63,7 +63,8 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 }
 
 void RingRenderer::build() {
-    const KernelOptions options{lanes_,           group_,        settings_.bounces, words_local_, job_.has_polygons,
+    const KernelOptions options{lanes_,           group_,        settings_.bounces,
+                                settings_.format, words_local_,  job_.has_polygons,
                                 job_.has_patches, job_.has_cones};
     std::vector<std::string> all = build_options(options, session_.device());
     all.insert(all.end(), settings_.kernels.more_options.begin(), settings_.kernels.more_options.end());

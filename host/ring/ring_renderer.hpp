@@ -31,6 +31,7 @@ struct RingSettings {
     Machine machine;
     raya_mapping mapping{};  // image size, PEs, offset, fold
     std::uint32_t bounces = 8;
+    NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
     std::uint32_t pixels_per_launch =

@@ -15,17 +15,26 @@
 namespace raya {
 namespace {
 
-using Words = std::vector<std::uint32_t>;
+// Words of one format.
+class Words : public std::vector<std::uint32_t> {
+  public:
+    explicit Words(const NumberFormat& format) : format_(format) {}
+    const NumberFormat& format() const { return format_; }
 
-std::uint32_t word_of(double value) { return std::bit_cast<std::uint32_t>(static_cast<float>(value)); }
-void put(Words& words, double value) { words.push_back(word_of(value)); }
+  private:
+    NumberFormat format_;
+};
+
+void put(Words& words, double value) {
+    words.push_back(std::bit_cast<std::uint32_t>(round_to_format(value, words.format())));
+}
 void put(Words& words, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(words, v[axis]);
 }
 void put_index(Words& words, std::size_t value) { words.push_back(static_cast<std::uint32_t>(value)); }
 
-void store(float (&to)[3], const Vec3& from) {
-    for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<float>(from[axis]);
+void store(float (&to)[3], const Vec3& from, const NumberFormat& format) {
+    for (int axis = 0; axis < 3; ++axis) to[axis] = round_to_format(from[axis], format);
 }
 
 // The primary rays as a corner and two steps (kernels/README.md, Camera).
@@ -38,11 +47,13 @@ void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
     const Vec3 right = gaze.cross(view.up).normalized(), top = right.cross(gaze);
     const double half_height = std::tan(view.angle_degrees * std::numbers::pi / 360);
     const double step = 2 * half_height / rows;  // pixels are square
-    store(job.eye, view.from);
-    store(job.column_step, step * right);
-    store(job.row_step, -step * top);
-    store(job.corner, gaze + (first(settings.mapping.width) - columns / 2) * step * right -
-                          (first(settings.mapping.height) - rows / 2) * step * top);
+    store(job.eye, view.from, settings.format);
+    store(job.column_step, step * right, settings.format);
+    store(job.row_step, -step * top, settings.format);
+    store(job.corner,
+          gaze + (first(settings.mapping.width) - columns / 2) * step * right -
+              (first(settings.mapping.height) - rows / 2) * step * top,
+          settings.format);
 }
 
 void pack_surface(Words& words, const Surface& s) {
@@ -112,7 +123,7 @@ void pack_faces(Words& words, const std::vector<Face>& faces, const Words& surfa
         const Polygon& polygon = *faces[i].polygon;
         const Vec3 normal = newell_normal(polygon.vertices).normalized();
         const int axis = dropped_axis(normal);
-        Words record;
+        Words record(words.format());
         put(record, normal);
         put(record, normal.dot(polygon.vertices[0]));
         record.push_back(surface_at[polygon.surface]);
@@ -150,14 +161,13 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     job.bounces = settings.bounces;
     std::copy(settings.cycles.begin(), settings.cycles.end(), job.cycles);
     pack_camera(job, scene.view, settings);
-    store(job.background, scene.background);
-    job.ambient = static_cast<float>(ambient_intensity(scene));
-    job.extent = static_cast<float>(scene_extent(scene));
+    store(job.background, scene.background, settings.format);
+    job.ambient = round_to_format(ambient_intensity(scene), settings.format);
+    job.extent = round_to_format(scene_extent(scene), settings.format);
 
-    PackedJob packed;
-    Words& words = packed.words;
+    Words words(settings.format);
     words.resize(sizeof(raya_job) / sizeof(std::uint32_t));
-    Words surface_at;
+    Words surface_at(settings.format);
     for (const Surface& s : scene.surfaces) {
         put_index(surface_at, words.size());
         pack_surface(words, s);
@@ -194,11 +204,13 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
         throw UserError(
             fmt::format("{}: packs to {} words, more than 32-bit word numbers reach", scene.name, words.size()));
 
+    PackedJob packed;
     packed.has_polygons = !faces.empty();
     packed.has_patches =
         std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });
     packed.has_cones = !scene.cones.empty();
     std::memcpy(words.data(), &job, sizeof job);
+    packed.words = std::move(words);
     return packed;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "machine/number_format.hpp"
 #include "scene/scene.hpp"
 #include "shared/job.h"
 
@@ -18,6 +19,7 @@ struct JobSettings {
     Sampling sampling = Sampling::kCentres;
     std::uint32_t bounces = 8;
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
+    NumberFormat format{};                            // of every number in the job
 };
 
 struct PackedJob {
@@ -25,8 +27,8 @@ struct PackedJob {
     bool has_polygons = false, has_patches = false, has_cones = false;
 };
 
-/// Numbers are rounded from double to fp32 once each. Patches of more than three vertices are cut into triangles, each
-/// of which counts as a polygon of its own. Throws UserError for a scene of more than 2^30 words.
+/// Numbers are rounded from double to the format once each. Patches of more than three vertices are cut into triangles,
+/// each of which counts as a polygon of its own. Throws UserError for a scene of more than 2^30 words.
 PackedJob pack_job(const Scene& scene, const JobSettings& settings);
 
 }  // namespace raya

@@ -51,8 +51,8 @@ static inline void store_pixel(words scene, tree* t, pixel_store* store, lanes_v
 static inline void start_walk(words scene, tree* t, mask fresh, index row, index column) {
     const job_words job = (job_words)scene;
     const vec zero = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));
-    const vec left = vec_mad(vec_all(job->row_step), to_lanes_real(row), vec_all(job->corner));
-    const vec through = vec_mad(vec_all(job->column_step), to_lanes_real(column), left);
+    const vec left = vec_mad(vec_all(job->row_step), num_from_index(row), vec_all(job->corner));
+    const vec through = vec_mad(vec_all(job->column_step), num_from_index(column), left);
     set_lanes(&t->ray.origin, fresh, vec_all(job->eye));
     set_lanes(&t->ray.direction, fresh, vec_normalize(through));
     t->ray.weight.all = choose(fresh, num_const(1.0f), t->ray.weight.all);

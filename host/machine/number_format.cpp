@@ -1,0 +1,69 @@
+#include "machine/number_format.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "error.hpp"
+
+namespace raya {
+namespace {
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw UserError(
+        fmt::format("--format {}: must be fp32, spa22 (e6m15), or eXmY with X = 5..8 exponent and Y = 4..21 fraction "
+                    "bits, and t to truncate",
+                    text));
+}
+
+// The number after `letter` at `at`; moves `at` behind it.
+int read_field(const std::string& text, std::size_t& at, char letter) {
+    if (at >= text.size() || text[at] != letter) refuse(text);
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data() + at + 1, text.data() + text.size(), value);
+    if (error != std::errc{}) refuse(text);
+    at = static_cast<std::size_t>(end - text.data());
+    return value;
+}
+
+}  // namespace
+
+NumberFormat parse_format(const std::string& text) {
+    if (text == "fp32") return {};
+    if (text == "spa22") return {6, 15, false};
+    std::size_t at = 0;
+    NumberFormat format;
+    format.exponent_bits = read_field(text, at, 'e');
+    format.fraction_bits = read_field(text, at, 'm');
+    format.truncates = at < text.size() && text[at] == 't';
+    if (at + (format.truncates ? 1 : 0) != text.size()) refuse(text);
+    if (format.exponent_bits < 5 || format.exponent_bits > 8 || format.fraction_bits < 4 || format.fraction_bits > 21)
+        refuse(text);
+    return format;
+}
+
+std::string format_name(const NumberFormat& format) {
+    if (format.is_fp32()) return "fp32";
+    return fmt::format("e{}m{}{}", format.exponent_bits, format.fraction_bits, format.truncates ? "t" : "");
+}
+
+float round_to_format(double value, const NumberFormat& format) {
+    if (std::isnan(value)) throw std::invalid_argument("NaN has no number in any format");
+    const int highest = (1 << (format.exponent_bits - 1)) - 1, lowest = 1 - highest;
+    const double largest = std::ldexp(2 - std::ldexp(1, -format.fraction_bits), highest);
+    if (std::abs(value) > largest) return static_cast<float>(std::copysign(largest, value));
+    if (value == 0) return static_cast<float>(value);
+    const int exponent = std::ilogb(value);
+    const double units = std::ldexp(value, format.fraction_bits - exponent);  // exact
+    const double whole =
+        format.truncates ? std::trunc(units) : std::nearbyint(units);  // the default mode: ties to even
+    const double rounded = std::ldexp(whole, exponent - format.fraction_bits);
+    if (std::abs(rounded) > largest) return static_cast<float>(std::copysign(largest, value));
+    if (std::abs(rounded) < std::ldexp(1, lowest)) return static_cast<float>(std::copysign(0.0, value));
+    return static_cast<float>(rounded);
+}
+
+}  // namespace raya
