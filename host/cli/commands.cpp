@@ -29,6 +29,7 @@ int run_program(int argc, char** argv) {
     add_devices_command(program);
     add_generate_command(program);
     add_bench_command(program);
+    add_study_command(program);
     try {
         program.parse(argc, argv);
         return kExitOk;

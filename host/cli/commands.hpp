@@ -15,5 +15,6 @@ void add_render_command(CLI::App& program);
 void add_devices_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
+void add_study_command(CLI::App& program);
 
 }  // namespace raya

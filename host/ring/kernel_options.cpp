@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "error.hpp"
 
@@ -39,25 +40,36 @@ std::uint32_t default_group_size(const DeviceInfo& device) {
     return device.type == "cpu" ? 1 : static_cast<std::uint32_t>(std::min<std::size_t>(32, device.max_group_size));
 }
 
-std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device) {
-    check_kernel_options(options, device);
-    std::vector<std::string> all = {
-        "-cl-std=CL1.2",
-        fmt::format("-DRAYA_LANES={}", options.lanes),
-        fmt::format("-DRAYA_GROUP={}", options.group_size),
-        fmt::format("-DRAYA_BOUNCES={}", options.bounces),
-        fmt::format("-DRAYA_WORDS_LOCAL={:d}", options.words_local),
-        fmt::format("-DRAYA_POLYGONS={:d}", options.polygons),
-        fmt::format("-DRAYA_PATCHES={:d}", options.patches),
-        fmt::format("-DRAYA_CONES={:d}", options.cones),
-    };
-    if (!options.format.is_fp32()) {
-        all.push_back(fmt::format("-DRAYA_EXPONENT_BITS={}", options.format.exponent_bits));
-        all.push_back(fmt::format("-DRAYA_FRACTION_BITS={}", options.format.fraction_bits));
-        all.push_back(fmt::format("-DRAYA_TRUNCATE={:d}", options.format.truncates));
+bool sphere_filter_holds(const NumberFormat& format, double extent) {
+    constexpr int kFewestBits = 10;
+    const double room =
+        std::ldexp(1.0, (1 << (format.exponent_bits - 2)) - 2);  // a quarter of the square root of the largest number
+    return !format.is_fp32() && format.fraction_bits >= kFewestBits && extent <= room;
+}
+
+std::vector<std::string> format_options(const NumberFormat& format, const DeviceInfo& device) {
+    std::vector<std::string> all = {"-cl-std=CL1.2"};
+    if (!format.is_fp32()) {
+        all.push_back(fmt::format("-DRAYA_EXPONENT_BITS={}", format.exponent_bits));
+        all.push_back(fmt::format("-DRAYA_FRACTION_BITS={}", format.fraction_bits));
+        all.push_back(fmt::format("-DRAYA_TRUNCATE={:d}", format.truncates));
     }
     all.push_back(fmt::format("-DRAYA_EXACT_DIVIDE={:d}", device.correctly_rounded_divide_sqrt));
     if (device.correctly_rounded_divide_sqrt) all.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
+    return all;
+}
+
+std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device) {
+    check_kernel_options(options, device);
+    std::vector<std::string> all = format_options(options.format, device);
+    all.push_back(fmt::format("-DRAYA_LANES={}", options.lanes));
+    all.push_back(fmt::format("-DRAYA_GROUP={}", options.group_size));
+    all.push_back(fmt::format("-DRAYA_BOUNCES={}", options.bounces));
+    all.push_back(fmt::format("-DRAYA_WORDS_LOCAL={:d}", options.words_local));
+    all.push_back(fmt::format("-DRAYA_POLYGONS={:d}", options.polygons));
+    all.push_back(fmt::format("-DRAYA_PATCHES={:d}", options.patches));
+    all.push_back(fmt::format("-DRAYA_CONES={:d}", options.cones));
+    if (options.filter) all.emplace_back("-DRAYA_FILTER=1");
     return all;
 }
 

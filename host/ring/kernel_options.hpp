@@ -14,8 +14,9 @@ struct KernelOptions {
     std::uint32_t lanes = 1;       // V
     std::uint32_t group_size = 1;  // L
     std::uint32_t bounces = 8;
-    NumberFormat format;
+    NumberFormat format{};
     bool words_local = true;  // PEs take the broadcast words into local memory
+    bool filter = false;      // spheres are filtered in fp32 before the exact test, see sphere_filter_holds
     bool polygons = true, patches = true, cones = true;
 };
 
@@ -24,6 +25,15 @@ std::uint32_t default_lanes(const DeviceInfo& device);
 
 /// L: 1 on a CPU, where lanes do its work, 32 elsewhere.
 std::uint32_t default_group_size(const DeviceInfo& device);
+
+/// What chooses the number format and how it divides: options for any kernel on the number layer, the OpenCL C version
+/// among them.
+std::vector<std::string> format_options(const NumberFormat& format, const DeviceInfo& device);
+
+/// Whether the bounds of kernels/geometry/sphere_filter.clh hold: a reduced format of 10 fraction bits or more, and a
+/// scene whose extent (scene units) leaves room for squares. The filter changes the time of a render only, no bit of
+/// it.
+bool sphere_filter_holds(const NumberFormat& format, double extent);
 
 /// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..64 or above the device's limit, more than
 /// 31 bounces.

@@ -47,6 +47,8 @@ std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, st
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
       settings_(checked(settings, session.device())),
+      filter_(settings.kernels.filter && !scene.spheres.empty() &&
+              sphere_filter_holds(settings.format, scene_extent(scene))),
       job_(pack_job(scene, job_settings(settings))),
       share_(largest_share(settings.mapping)),
       memory_(plan_pe_memory(settings.machine, scene.name, job_.words.size(), settings.bounces, share_)),
@@ -63,9 +65,15 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 }
 
 void RingRenderer::build() {
-    const KernelOptions options{lanes_,           group_,        settings_.bounces,
-                                settings_.format, words_local_,  job_.has_polygons,
-                                job_.has_patches, job_.has_cones};
+    const KernelOptions options{.lanes = lanes_,
+                                .group_size = group_,
+                                .bounces = settings_.bounces,
+                                .format = settings_.format,
+                                .words_local = words_local_,
+                                .filter = filter_,
+                                .polygons = job_.has_polygons,
+                                .patches = job_.has_patches,
+                                .cones = job_.has_cones};
     std::vector<std::string> all = build_options(options, session_.device());
     all.insert(all.end(), settings_.kernels.more_options.begin(), settings_.kernels.more_options.end());
     const Clock::time_point start = Clock::now();

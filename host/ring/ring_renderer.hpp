@@ -23,6 +23,7 @@ namespace raya {
 struct KernelChoice {
     std::uint32_t lanes = 0;                // V: 1, 4, 8 or 16
     std::uint32_t group_size = 0;           // L: 1..64 work-items
+    bool filter = true;                     // the sphere filter, where it holds: the same hits, sooner
     std::filesystem::path kernel_dir;       // kernels from disk in place of the program's own
     std::vector<std::string> more_options;  // appended to the build options
 };
@@ -78,6 +79,7 @@ class RingRenderer {
 
     Session& session_;
     RingSettings settings_;
+    bool filter_ = false;  // see sphere_filter_holds
     PackedJob job_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ring/kernel_options.hpp"
 #include "ring/mapping.hpp"
 #include "ring/ring_renderer.hpp"
 #include "scene/nff_reader.hpp"
@@ -16,6 +17,8 @@ struct RingCase {
     std::string fold = "cyclic", machine = "grande";
     std::uint32_t lanes = 0, group = 0, bounces = 8;  // lanes, group 0: the device's own
     Sampling sampling = Sampling::kCentres;
+    std::string format = "fp32";
+    bool filter = true;
     std::vector<std::string> more_options{};
 };
 
@@ -25,6 +28,8 @@ inline RingSettings settings_of(const RingCase& c) {
     settings.mapping = make_mapping("cyclic", c.width, c.height, c.pes, c.offset, c.fold);
     settings.bounces = c.bounces;
     settings.sampling = c.sampling;
+    settings.format = parse_format(c.format);
+    settings.kernels.filter = c.filter;
     settings.kernels.lanes = c.lanes;
     settings.kernels.group_size = c.group;
     settings.kernels.more_options = c.more_options;

@@ -38,7 +38,9 @@ Answer answer_of(const RingResult& result) { return {pixel_hash(result.image), r
 
 TEST_CASE("lanes, group size and the optimiser change no bit of the image and no count", "[ring]") {
     const Scene scene = mixed_scene();
-    const Answer expected = answer_of(render_scene(scene, {.lanes = 1, .group = 1}));
+    const std::string format = GENERATE("fp32", "spa22");
+    CAPTURE(format);
+    const Answer expected = answer_of(render_scene(scene, {.lanes = 1, .group = 1, .format = format}));
     CHECK(expected.events[RAYA_PRIMARY] == 64 * 48);
     for (const auto kind : {RAYA_REFLECTED, RAYA_REFRACTED, RAYA_SHADOW_HITS, RAYA_HIGHLIGHTS, RAYA_SPHERE_TESTS,
                             RAYA_PLANE_TESTS, RAYA_POLYGON_TESTS, RAYA_CONE_TESTS})
@@ -51,7 +53,8 @@ TEST_CASE("lanes, group size and the optimiser change no bit of the image and no
                               {.lanes = 16, .group = 3},
                               {.lanes = 1, .group = 1, .more_options = {"-cl-opt-disable"}},
                               {.lanes = 16, .group = 1, .more_options = {"-cl-opt-disable"}}};
-    for (const RingCase& c : cases) {
+    for (RingCase c : cases) {
+        c.format = format;
         CAPTURE(c.lanes, c.group, c.more_options);
         CHECK(answer_of(render_scene(scene, c)) == expected);
     }
@@ -59,12 +62,15 @@ TEST_CASE("lanes, group size and the optimiser change no bit of the image and no
 
 TEST_CASE("PEs, offset, fold and machine change no bit of the image and no count", "[ring]") {
     const Scene scene = mixed_scene();
-    const Answer expected = answer_of(render_scene(scene, {.pes = 1, .offset = 0}));
+    const std::string format = GENERATE("fp32", "spa22");
+    CAPTURE(format);
+    const Answer expected = answer_of(render_scene(scene, {.pes = 1, .offset = 0, .format = format}));
     for (const std::uint32_t pes : {1u, 7u, 64u, 256u, 1000u, 64u * 48u})
         for (const char* fold : {"cyclic", "block"})
             for (const std::uint32_t offset : {0u, 16u, 63u}) {
                 CAPTURE(pes, fold, offset);
-                CHECK(answer_of(render_scene(scene, {.pes = pes, .offset = offset, .fold = fold})) == expected);
+                CHECK(answer_of(render_scene(scene, {.pes = pes, .offset = offset, .fold = fold, .format = format})) ==
+                      expected);
             }
 }
 

@@ -1,0 +1,166 @@
+// raya study NAME: measurements over many renders, written as tables. Each study adds its own command here.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands.hpp"
+#include "cli/parse.hpp"
+#include "error.hpp"
+#include "report/progress.hpp"
+#include "report/table.hpp"
+#include "report/whole_file.hpp"
+#include "scene/nff_reader.hpp"
+#include "study/formats_report.hpp"
+#include "study/formats_study.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FormatsCommand {
+    std::string folder, size = "256", device;
+    std::vector<std::string> scenes, formats;
+    std::optional<std::uint32_t> lanes;
+    int samples = 5;
+};
+
+// Makes the folder, and refuses it before the work rather than after if the files could not be written.
+void prepare_folder(const fs::path& folder, const std::vector<std::string>& files) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+        throw UserError(
+            fmt::format("-o {}: cannot make the folder: {}; name another one", folder.string(), error.message()));
+    for (const std::string& file : files) check_writable(folder / file);
+}
+
+// Each format once, in the order given; fp32 is always there.
+std::vector<NumberFormat> formats_of(const FormatsCommand& command) {
+    if (command.formats.empty()) return reduced_formats();
+    std::vector<NumberFormat> formats;
+    for (const std::string& name : command.formats) {
+        const NumberFormat format = parse_format(name);
+        const bool known = format.is_fp32() || std::find(formats.begin(), formats.end(), format) != formats.end();
+        if (!known) formats.push_back(format);
+    }
+    return formats;
+}
+
+FormatsSettings formats_settings(const FormatsCommand& command) {
+    if (command.samples < 1 || command.samples > 1000)
+        throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
+    if (command.lanes == 0u) throw UserError("--lanes 0: must be 1, 4, 8 or 16");
+    const std::vector<std::uint32_t> size = parse_image_size(command.size);
+    FormatsSettings settings;
+    settings.width = size[0];
+    settings.height = size[1];
+    settings.lanes = command.lanes.value_or(0);
+    settings.samples = command.samples;
+    settings.formats = formats_of(command);
+    return settings;
+}
+
+std::vector<LabelledScene> scenes_of(const FormatsCommand& command) {
+    if (command.scenes.empty()) return embedded_study_scenes();
+    std::vector<LabelledScene> scenes;
+    for (const std::string& file : command.scenes) scenes.push_back({file, read_nff(file)});
+    return scenes;
+}
+
+FormatsStudy run_with_progress(Session& session, const std::vector<LabelledScene>& scenes,
+                               const FormatsSettings& settings) {
+    ProgressBar bar(true);
+    return run_formats_study(session, scenes, settings,
+                             bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
+}
+
+void study_formats(const FormatsCommand& command) {
+    const FormatsSettings settings = formats_settings(command);
+    const std::vector<LabelledScene> scenes = scenes_of(command);
+    const fs::path folder = command.folder;
+    prepare_folder(folder, {"formats.csv", "formats.json", "formats.md"});
+    Session session(choose_device(command.device));
+    const FormatsStudy study = run_with_progress(session, scenes, settings);
+    write_whole_file(folder / "formats.csv", formats_csv(study));
+    write_whole_file(folder / "formats.json", formats_json(study).dump(2) + "\n");
+    write_whole_file(folder / "formats.md", formats_markdown(study));
+    fmt::print("{}", text_table(formats_overview_cells(study)));
+}
+
+void add_timing_options(CLI::App& command, FormatsCommand& options) {
+    command
+        .add_option("--samples", options.samples,
+                    "Timed renders of each scene and format, 1..1000; the least time counts")
+        ->type_name("N")
+        ->capture_default_str();
+    command
+        .add_option("--lanes", options.lanes,
+                    "Rays that a work-item traces at once: 1, 4, 8 or 16; default: the device's")
+        ->type_name("V");
+    command
+        .add_option("--device", options.device,
+                    "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
+                    "GPU, else the first CPU")
+        ->type_name("NAME");
+}
+
+void add_formats_study(CLI::App& study) {
+    CLI::App* command = study.add_subcommand(
+        "formats",
+        "PSNR, errors and time of fp32 and the reduced number formats against the double-precision reference");
+    const auto options = std::make_shared<FormatsCommand>();
+    command
+        ->add_option("-o,--output", options->folder,
+                     "Folder for formats.csv, formats.json and formats.md; made if missing")
+        ->required()
+        ->type_name("DIR");
+    command
+        ->add_option("SCENE", options->scenes,
+                     "Scenes in NFF; default: the project's centre, spheres, glass, polygons, cones")
+        ->type_name("SCENE.nff");
+    command
+        ->add_option("--format", options->formats,
+                     "Formats beside fp32, with commas between: spa22 (e6m15) or eXmY[t]: X = 5..8, Y = 4..21, t "
+                     "truncates; default: e8m21, e8m18, e8m15, e7m15, e6m15, e6m14, e6m13, without and with t")
+        ->delimiter(',')
+        ->allow_extra_args(false)  // what follows is a scene
+        ->type_name("NAME,...");
+    command->add_option("--size", options->size, "Image size in pixels, 1..16384 a side")
+        ->type_name("N|WxH")
+        ->capture_default_str();
+    add_timing_options(*command, *options);
+    refuse_odd_values(*command);
+    command->callback([options] { study_formats(*options); });
+}
+
+std::string names_of_studies(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::App* study : command.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(study->get_name());
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("study", "Measure over many renders and write tables");
+    add_formats_study(*command);
+    // What is no study's name would be "not expected" without a word on what is: it lands here instead.
+    const auto refuse = [command](const std::string& name) {
+        throw UserError(fmt::format("no study '{}': there are {}", name, names_of_studies(*command)));
+    };
+    command->add_option_function<std::string>("NAME", refuse, "The study, see Subcommands")->type_name("");
+    command->callback([command] {
+        if (command->get_subcommands().empty())
+            throw UserError(fmt::format("study: name one of {}", names_of_studies(*command)));
+    });
+}
+
+}  // namespace raya

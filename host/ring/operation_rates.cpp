@@ -1,0 +1,50 @@
+#include "ring/operation_rates.hpp"
+
+#include <algorithm>
+
+#include "cl/kernel_source.hpp"
+#include "ring/kernel_options.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint32_t kChains = 8;  // of kernels/number/operations.cl
+
+double last_seconds(Session& session) {
+    const double ns = static_cast<double>(session.profile().summary().back().total_ns);
+    session.clear_profile();
+    return ns * 1e-9;
+}
+
+}  // namespace
+
+std::array<double, kOperations.size()> operation_rates(Session& session, const NumberFormat& format,
+                                                       std::uint32_t lanes, int samples) {
+    std::vector<std::string> options = format_options(format, session.device());
+    options.push_back("-DRAYA_LANES=" + std::to_string(lanes));
+    const Program program = session.build("number/operations.cl", kernel_source("number/operations.cl"), options);
+    auto kernel = program.kernel<cl_uint, cl_uint, cl_float, Buffer<float>&>("operations");
+    // A few items a unit on a CPU; enough to hide latencies elsewhere.
+    const std::size_t items = std::size_t{session.device().compute_units} * (session.device().type == "cpu" ? 2 : 2048);
+    Buffer<float> results = session.buffer<float>("results of operations", items * lanes);
+    std::array<double, kOperations.size()> rates{};
+    for (std::uint32_t kind = 0; kind < rates.size(); ++kind) {
+        cl_uint rounds = 1000;
+        const auto seconds = [&] {
+            session.clear_profile();
+            session.launch("operations", kernel, items, 1, kind, rounds, 1.0f, results);
+            return last_seconds(session);
+        };
+        seconds();  // PoCL compiles here
+        while (seconds() < 0.01 && rounds < 100'000'000) rounds *= 4;
+        double best = 0;
+        for (int i = 0; i < samples; ++i) {
+            const double once = seconds();
+            if (once > 0) best = std::max(best, static_cast<double>(items) * lanes * kChains * rounds / once);
+        }
+        rates[kind] = best;
+    }
+    return rates;
+}
+
+}  // namespace raya

@@ -1,0 +1,128 @@
+#include "study/formats_study.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "embedded.hpp"
+#include "reference/reference.hpp"
+#include "ring/mapping.hpp"
+#include "scene/nff_reader.hpp"
+
+namespace raya {
+namespace {
+
+// Steps that are done, of those there are.
+class Steps {
+  public:
+    Steps(std::size_t all, const ProgressCallback& progress) : all_(all), progress_(progress) {}
+
+    void done() {
+        ++done_;
+        if (progress_) progress_(static_cast<double>(done_) / static_cast<double>(all_));
+    }
+
+  private:
+    std::size_t all_, done_ = 0;
+    const ProgressCallback& progress_;
+};
+
+RingSettings ring_settings(const FormatsSettings& settings) {
+    RingSettings ring;
+    ring.machine = machine_named("grande");
+    ring.mapping = make_mapping("cyclic", settings.width, settings.height, settings.width,
+                                ring.machine.offset % std::max(settings.width, 1u), "cyclic");
+    ring.bounces = ring.machine.bounces;
+    ring.kernels.lanes = settings.lanes;
+    return ring;
+}
+
+double kernel_seconds(const RingResult& result) {
+    double ns = 0;
+    for (const LabelSummary& command : result.commands)
+        if (command.label == "trace") ns += static_cast<double>(command.total_ns);
+    return ns > 0 ? ns * 1e-9 : result.render_s;
+}
+
+// Renderers for one scene, fp32's first.
+std::vector<std::unique_ptr<RingRenderer>> make_renderers(Session& session, const Scene& scene, RingSettings ring,
+                                                          const std::vector<NumberFormat>& formats, Steps& steps) {
+    std::vector<std::unique_ptr<RingRenderer>> renderers;
+    for (const NumberFormat& format : formats) {
+        ring.format = format;
+        renderers.push_back(std::make_unique<RingRenderer>(session, scene, ring));
+        steps.done();
+    }
+    return renderers;
+}
+
+// What a first render tells of a format.
+FormatRow first_row(const NumberFormat& format, const reference::Image& expected, const RingResult& result) {
+    return {format, image_difference(expected.pixels, result.image.rgb, kShownStep), pixel_hash(result.image),
+            kernel_seconds(result), 0};
+}
+
+SceneRows study_scene(Session& session, const LabelledScene& labelled, const RingSettings& ring,
+                      const std::vector<NumberFormat>& formats, FormatsStudy& study, Steps& steps) {
+    const reference::Image expected = reference::render(labelled.scene, {.width = static_cast<int>(study.width),
+                                                                         .height = static_cast<int>(study.height),
+                                                                         .bounces = static_cast<int>(study.bounces)});
+    steps.done();
+    const auto renderers = make_renderers(session, labelled.scene, ring, formats, steps);
+    SceneRows scene{labelled.label, labelled.scene.object_count(), {}};
+    for (int sample = 0; sample < study.samples; ++sample)
+        for (std::size_t i = 0; i < formats.size(); ++i) {
+            const RingResult result = renderers[i]->render();
+            study.lanes = result.lanes;
+            study.group_size = result.group_size;
+            if (sample == 0) scene.rows.push_back(first_row(formats[i], expected, result));
+            scene.rows[i].kernel_s = std::min(scene.rows[i].kernel_s, kernel_seconds(result));
+            steps.done();
+        }
+    for (FormatRow& row : scene.rows) row.ratio_to_fp32 = row.kernel_s / scene.rows.front().kernel_s;
+    return scene;
+}
+
+}  // namespace
+
+std::vector<NumberFormat> reduced_formats() {
+    std::vector<NumberFormat> formats;
+    for (const char* name : {"e8m21", "e8m18", "e8m15", "e7m15", "e6m15", "e6m14", "e6m13"})
+        for (const bool truncates : {false, true}) {
+            formats.push_back(parse_format(name));
+            formats.back().truncates = truncates;
+        }
+    return formats;
+}
+
+std::vector<LabelledScene> embedded_study_scenes() {
+    std::vector<LabelledScene> scenes;
+    for (const std::string name : {"centre", "spheres", "glass", "polygons", "cones"}) {
+        const std::string file = "scenes/" + name + ".nff";
+        scenes.push_back({name, parse_nff(embedded_files().at(file), file)});
+    }
+    return scenes;
+}
+
+FormatsStudy run_formats_study(Session& session, const std::vector<LabelledScene>& scenes,
+                               const FormatsSettings& settings, const ProgressCallback& progress) {
+    const RingSettings ring = ring_settings(settings);
+    std::vector<NumberFormat> formats = {NumberFormat{}};
+    formats.insert(formats.end(), settings.formats.begin(), settings.formats.end());
+
+    FormatsStudy study{.width = settings.width,
+                       .height = settings.height,
+                       .bounces = ring.bounces,
+                       .machine = ring.machine.name,
+                       .pes = ring.mapping.pes,
+                       .offset = ring.mapping.offset,
+                       .device = session.device(),
+                       .samples = settings.samples,
+                       .scenes = {}};
+    const std::size_t steps_of_scene = 1 + formats.size() * (1 + static_cast<std::size_t>(settings.samples));
+    Steps steps(scenes.size() * steps_of_scene, progress);
+    for (const LabelledScene& scene : scenes)
+        study.scenes.push_back(study_scene(session, scene, ring, formats, study, steps));
+    return study;
+}
+
+}  // namespace raya

@@ -1,0 +1,124 @@
+// Operands that lead an exact operation into its corners: ties, cancellation, the ends of the range.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "number/mpfr_oracle.hpp"
+#include "number/number_runner.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+
+class RandomOperands {
+  public:
+    RandomOperands(const NumberFormat& format, std::uint64_t seed)
+        : format_(format), range_(range_of(format)), random_(seed) {}
+
+    Operands rows(std::size_t count) {
+        Operands rows;
+        for (std::size_t i = 0; i < count; ++i) {
+            const float a = number(below(4) == 0 ? near_end() : any_exponent());
+            const float b = number(partner(a));
+            rows.add(a, b, addend(a, b));
+        }
+        return rows;
+    }
+
+  private:
+    int below(int n) { return static_cast<int>(random_.next() >> 33) % n; }
+    int within(int lowest, int highest) { return lowest + below(highest - lowest + 1); }
+    int any_exponent() { return within(range_.lowest, range_.highest); }
+    int near_end() { return below(2) == 0 ? range_.lowest + below(3) : range_.highest - below(3); }
+    float sign() { return below(2) == 0 ? -1.0F : 1.0F; }
+    bool truth() { return below(2) == 0; }
+
+    // 0 .. 2^Y - 1.
+    std::uint32_t fraction() {
+        const std::uint32_t all = (1u << format_.fraction_bits) - 1;
+        const auto bit = [&] { return 1u << below(format_.fraction_bits); };
+        const auto any = static_cast<std::uint32_t>(random_.next() >> 32) & all;
+        const int cut = below(format_.fraction_bits);
+        switch (below(8)) {
+            case 0:
+                return 0;  // power of two
+            case 1:
+                return bit() | bit();  // few bits
+            case 2:
+                return all & ~(bit() | (truth() ? bit() : 0));  // few zeros
+            case 3:
+                return truth() ? all : 1;  // next to a power of two
+            case 4:
+            case 5:
+                return (any >> cut | 1) << cut;  // any length: a product of two may end right at a tie
+            default:
+                return any;
+        }
+    }
+
+    // A number of the format with this exponent, clamped to the range; sometimes zero.
+    float number(int exponent) {
+        if (below(128) == 0) return 0 * sign();
+        const int e = std::clamp(exponent, range_.lowest, range_.highest);
+        const auto significand = static_cast<float>((1u << format_.fraction_bits) + fraction());  // exact
+        return sign() * std::ldexp(significand, e - format_.fraction_bits);
+    }
+
+    int exponent_of(double value) { return value == 0 ? any_exponent() : std::ilogb(value); }
+
+    // An exponent for b at which something happens beside a.
+    int partner(float a) {
+        const int e = exponent_of(a), reach = format_.fraction_bits + 4;
+        switch (below(6)) {
+            case 0:
+                return e + within(-reach, reach);  // sums that round
+            case 1:
+                return e + within(-1, 1);  // sums that cancel
+            case 2:
+                return (truth() ? range_.lowest : range_.highest) - e + within(-2, 2);  // products at the ends
+            case 3:
+                return e - (truth() ? range_.lowest : range_.highest) + within(-2, 2);  // quotients at the ends
+            default:
+                return any_exponent();
+        }
+    }
+
+    // The multiply-accumulate's third operand, placed by the exact product, which a double holds.
+    float addend(float a, float b) {
+        const double product = static_cast<double>(a) * b;
+        const int e = exponent_of(product), y = format_.fraction_bits;
+        switch (below(8)) {
+            case 0:
+                return of_format(-product);  // cancels all that it can
+            case 1:
+                return of_format(-product + std::ldexp(within(-2, 2), e - y));  // all but a few units
+            case 2:
+                return of_format(to_tie(product));  // a tie, or next to one
+            case 3:
+                return number(e - within(y, 3 * y + 10));  // tiny beside the product
+            case 4:
+                return number(e + within(y, 3 * y + 10));  // the product tiny beside it
+            case 5:
+                return number(e + y + 1);  // product about half a unit
+            case 6:
+                return number(e + within(-y - 2, y + 2));
+            default:
+                return number(any_exponent());
+        }
+    }
+
+    // What takes the product to the middle between two numbers of the format.
+    double to_tie(double product) {
+        const int e = exponent_of(product), y = format_.fraction_bits;
+        const double unit = std::ldexp(1, e - y);
+        return (std::floor(product / unit) + 0.5) * unit - product;
+    }
+
+    float of_format(double value) { return round_to_format(value, format_); }
+
+    NumberFormat format_;
+    Range range_;
+    SplitMix random_;
+};
+
+}  // namespace raya

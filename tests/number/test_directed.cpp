@@ -1,0 +1,184 @@
+// Cases whose results one can see: ties, carries, cancellation, the ends of the range, zeros. No oracle but the eye.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "number/compare.hpp"
+
+namespace raya {
+namespace {
+
+enum Operation : std::size_t { kAdd, kSub, kMul, kDiv, kSqrt, kMad };
+
+struct Case {
+    const char* what;
+    Operation operation;
+    double a, b, c;
+    double nearest, truncated;
+};
+
+double two_to(int exponent) { return std::ldexp(1, exponent); }
+
+/// The numbers that a format's cases are made of. `unit` is the distance from 1 to the next number.
+struct Landmarks {
+    explicit Landmarks(const NumberFormat& format)
+        : unit(two_to(-format.fraction_bits)),
+          base(two_to(range_of(format).highest - 1)),
+          step(base * unit),
+          smallest(two_to(range_of(format).lowest)),
+          largest(two_to(range_of(format).highest) * (2 - unit)) {}
+
+    double unit;      // 2^-Y
+    double base;      // a power of two so large that parts of its step are in the format too
+    double step;      // from base to the next number
+    double smallest;  // the smallest number above 0
+    double largest;   // the largest number
+};
+
+/// Sums and differences.
+std::vector<Case> sums(const Landmarks& f) {
+    const double b = f.base, s = f.step, above = 1 + f.unit, below = 1 - f.unit / 2, all_ones = b * (2 - f.unit);
+    return {
+        {"tie, the even number below", kAdd, b, s / 2, 0, b, b},
+        {"tie, the even number above", kAdd, b + s, s / 2, 0, b + 2 * s, b + s},
+        {"tie, broken upwards by the last bit", kAdd, b, s / 2 * above, 0, b + s, b},
+        {"tie, broken downwards by the last bit", kAdd, b + s, s / 2 * below, 0, b + s, b + s},
+        {"negative tie", kAdd, -b - s, -s / 2, 0, -b - 2 * s, -b - s},
+        {"tie from above", kSub, b + s, s / 2, 0, b, b},
+        {"below a power of two the steps are half as wide: a tie", kSub, b, s / 4, 0, b, b - s / 2},
+        {"below a power of two, broken upwards", kSub, b, s / 4 * below, 0, b, b - s / 2},
+        {"below a power of two, broken downwards", kSub, b, s / 4 * above, 0, b - s / 2, b - s / 2},
+        {"carry into the next binade", kAdd, all_ones, s, 0, 2 * b, 2 * b},
+        {"a tie carries into the next binade", kAdd, all_ones, s / 2, 0, 2 * b, all_ones},
+        {"an addend too small to see", kAdd, b, f.smallest, 0, b, b},
+        {"one too small to see still counts below, where truncated", kSub, b, f.smallest, 0, b, b - s / 2},
+        {"cancellation leaves the last bit", kSub, b + s, b, 0, s, s},
+        {"cancellation across a binade", kSub, b, b * below, 0, s / 2, s / 2},
+        {"a - a is +0", kSub, b, b, 0, 0.0, 0.0},
+        {"-a + a is +0", kAdd, -b, b, 0, 0.0, 0.0},
+        {"0 + -0 is +0", kAdd, 0.0, -0.0, 0, 0.0, 0.0},
+        {"-0 + -0 is -0", kAdd, -0.0, -0.0, 0, -0.0, -0.0},
+        {"-0 - 0 is -0", kSub, -0.0, 0.0, 0, -0.0, -0.0},
+        {"0 - 0 is +0", kSub, 0.0, 0.0, 0, 0.0, 0.0},
+        {"a + 0", kAdd, f.smallest, -0.0, 0, f.smallest, f.smallest},
+        {"overflow saturates", kAdd, f.largest, f.largest, 0, f.largest, f.largest},
+        {"negative overflow saturates", kSub, -f.largest, f.largest, 0, -f.largest, -f.largest},
+        {"half a step above the largest saturates", kAdd, f.largest, s, 0, f.largest, f.largest},
+        {"the largest is reached", kAdd, f.largest - 2 * s, 2 * s, 0, f.largest, f.largest},
+        {"a difference below the smallest is flushed", kSub, f.smallest * above, f.smallest, 0, 0.0, 0.0},
+        {"flushed with its sign", kSub, f.smallest, f.smallest * above, 0, -0.0, -0.0},
+        {"the smallest difference", kSub, f.smallest * 2, f.smallest, 0, f.smallest, f.smallest},
+    };
+}
+
+/// Products, quotients and roots.
+std::vector<Case> products(const Landmarks& f) {
+    const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
+    return {
+        {"(1 + u)^2, a last bit far away", kMul, above, above, 0, 1 + 2 * f.unit, 1 + 2 * f.unit},
+        {"(1 - u/2)^2", kMul, below, below, 0, 1 - f.unit, 1 - f.unit},
+        {"(1 + u)(1 - u/2): just below a tie between 1 and 1 + u", kMul, above, below, 0, 1, 1},
+        {"1.5 (1 + u): a tie, upwards to even", kMul, 1.5, above, 0, 1.5 + 2 * f.unit, 1.5 + f.unit},
+        {"1.5 (1 + 3 u): a tie, downwards to even", kMul, -1.5, 1 + 3 * f.unit, 0, -1.5 - 4 * f.unit,
+         -1.5 - 4 * f.unit},
+        {"sign of a product of zeros", kMul, -0.0, 1, 0, -0.0, -0.0},
+        {"sign of a product of two negative numbers", kMul, -0.0, -1, 0, 0.0, 0.0},
+        {"overflow saturates", kMul, high, -high, 0, -high, -high},
+        {"just overflows", kMul, high, above, 0, high, high},
+        {"underflow is flushed with its sign", kMul, -low, low, 0, -0.0, -0.0},
+        {"half of the smallest is flushed", kMul, low, 0.5, 0, 0.0, 0.0},
+        {"less than half a step above the smallest", kMul, low * above, below, 0, low, low},
+        {"just below the smallest: flushed, not rounded to it", kMul, low, below, 0, 0.0, 0.0},
+        {"a far-away bit below the smallest: rounds to it, or is flushed", kMul, -low * above, 1 - f.unit, 0, -low,
+         -0.0},
+        {"x / 0 saturates", kDiv, 1, 0.0, 0, high, high},
+        {"x / -0 saturates with the sign of both", kDiv, 1, -0.0, 0, -high, -high},
+        {"-x / 0", kDiv, -low, 0.0, 0, -high, -high},
+        {"0 / 0", kDiv, 0.0, 0.0, 0, high, high},
+        {"-0 / 0", kDiv, -0.0, 0.0, 0, -high, -high},
+        {"0 / x", kDiv, 0.0, -3, 0, -0.0, -0.0},
+        {"x / x", kDiv, high, high, 0, 1, 1},
+        {"quotient overflows", kDiv, high, low, 0, high, high},
+        {"quotient underflows", kDiv, low, -high, 0, -0.0, -0.0},
+        {"1 / (1 + u), between 1 - u and 1 - u / 2", kDiv, 1, above, 0, 1 - f.unit, 1 - f.unit},
+        {"1 / (1 - u/2), between 1 and 1 + u, just above the middle", kDiv, 1, below, 0, 1 + f.unit, 1},
+        {"quotient just below the smallest", kDiv, low, above, 0, 0.0, 0.0},
+        {"root of a negative number", kSqrt, -1, 0, 0, 0.0, 0.0},
+        {"root of the smallest negative number", kSqrt, -low, 0, 0, 0.0, 0.0},
+        {"root of -0 is +0", kSqrt, -0.0, 0, 0, 0.0, 0.0},
+        {"root of 0", kSqrt, 0.0, 0, 0, 0.0, 0.0},
+        {"root of a square", kSqrt, 2.25, 0, 0, 1.5, 1.5},
+        {"root of 1 + u, just below a tie", kSqrt, above, 0, 0, 1, 1},
+        {"root of 1 - u/2, just below a tie of finer steps", kSqrt, below, 0, 0, 1 - f.unit / 2, 1 - f.unit / 2},
+        {"root of 4 (1 + 2 u), just below 2 (1 + u)", kSqrt, 4 + 8 * f.unit, 0, 0, 2 + 2 * f.unit, 2.0},
+        {"root of the smallest", kSqrt, low, 0, 0, std::sqrt(low), std::sqrt(low)},  // an even power of two
+    };
+}
+
+/// Multiply-accumulates.
+std::vector<Case> accumulations(const Landmarks& f) {
+    const double u = f.unit, above = 1 + u, low = f.smallest, high = f.largest, b = f.base, s = f.step;
+    return {
+        {"one rounding: (1 + u)^2 - (1 + 2 u) = u^2, or flushed", kMad, above, above, -(1 + 2 * u),
+         u * u < low ? 0.0 : u * u, u * u < low ? 0.0 : u * u},
+        {"ab = -c gives +0", kMad, 1.5, -1, 1.5, 0.0, 0.0},
+        {"0 x + -0 with a negative product", kMad, 0.0, -1, -0.0, -0.0, -0.0},
+        {"0 x + -0 with a positive product", kMad, 0.0, 1, -0.0, 0.0, 0.0},
+        {"tie, the product half a step", kMad, s, 0.5, b, b, b},
+        {"tie to the even number above", kMad, s, 0.5, b + s, b + 2 * s, b + s},
+        {"tie broken upwards by the product's last bit", kMad, s * above, 0.5, b, b + s, b},
+        {"tie broken by a product far below", kMad, b, 0.5, low, b / 2, b / 2},
+        {"c too small to see, against the product", kMad, b, 0.5, -low, b / 2, b / 2 - s / 4},
+        {"product too small to see, against c", kMad, low, -low, b, b, b - s / 2},
+        {"tie of the product, broken by c upwards", kMad, 1.5, above, low, 1.5 + 2 * u, 1.5 + u},
+        {"tie of the product, broken by c downwards", kMad, 1.5, above, -low, 1.5 + u, 1.5 + u},
+        {"overflows", kMad, high, high, -high, high, high},
+        {"overflows negative", kMad, high, -high, high, -high, -high},
+        {"c takes the product back into the range", kMad, high, 2, -high, high, high},
+        {"a product above the range, all but a little taken away", kMad, high, above, -high, high * u, high * u},
+        {"a product below the range helps", kMad, low, 0.5, low / 2 * 2, low * 1.5, low * 1.5},
+        {"two halves of the smallest", kMad, low, -0.5, low, 0.0, 0.0},
+        {"flushed with its sign", kMad, low, -0.5, low * 0, -0.0, -0.0},
+    };
+}
+
+void check_cases(const NumberFormat& format, const std::vector<Case>& cases) {
+    Operands operands;
+    for (const Case& one : cases) {
+        for (const double value : {one.a, one.b, one.c, format.truncates ? one.truncated : one.nearest}) {
+            INFO(format_name(format) << ": " << one.what << " uses " << value);
+            REQUIRE(static_cast<double>(round_to_format(value, format)) == value);
+        }
+        operands.add(static_cast<float>(one.a), static_cast<float>(one.b), static_cast<float>(one.c));
+    }
+    operands.pad();
+    const NumberBuild build = {format};
+    const Results results = NumberRunner(build).run("operations", operands, 6);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const Case& one = cases[i];
+        const auto expected = static_cast<float>(format.truncates ? one.truncated : one.nearest);
+        const auto found = std::bit_cast<float>(results[one.operation][i]);
+        CAPTURE(build.name(), one.what, operation_names()[one.operation], one.a, one.b, one.c, found, expected);
+        CHECK(std::bit_cast<std::uint32_t>(found) == std::bit_cast<std::uint32_t>(expected));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("ties, carries, cancellation, ends of the range and zeros", "[number][directed]") {
+    for (const NumberFormat& format :
+         {NumberFormat{5, 4}, NumberFormat{6, 15}, NumberFormat{7, 12}, NumberFormat{8, 21}})
+        for (const bool truncates : {false, true}) {
+            NumberFormat both = format;
+            both.truncates = truncates;
+            const Landmarks landmarks(both);
+            std::vector<Case> cases = sums(landmarks);
+            for (const auto& more : {products(landmarks), accumulations(landmarks)})
+                cases.insert(cases.end(), more.begin(), more.end());
+            check_cases(both, cases);
+        }
+}
+
+}  // namespace raya

@@ -1,0 +1,47 @@
+// e5m4, the smallest format, on every pair of its numbers; e5m4t likewise.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "number/compare.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+/// All numbers of the format, zeros of both signs among them.
+std::vector<float> all_numbers(const NumberFormat& format) {
+    const Range range = range_of(format);
+    std::vector<float> numbers = {0.0F, -0.0F};
+    const int first = 1 << format.fraction_bits;
+    for (int exponent = range.lowest; exponent <= range.highest; ++exponent)
+        for (int significand = first; significand < 2 * first; ++significand) {
+            const float size = std::ldexp(static_cast<float>(significand), exponent - format.fraction_bits);
+            numbers.push_back(size);
+            numbers.push_back(-size);
+        }
+    return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("every pair of numbers of e5m4", "[number][exhaustive]") {
+    constexpr std::uint64_t kSeed = 54;
+    for (const bool truncates : {false, true}) {
+        const NumberFormat format = {5, 4, truncates};
+        const std::vector<float> numbers = all_numbers(format);
+        REQUIRE(numbers.size() == 2 + 2 * 30 * 16);
+        SplitMix random(kSeed);
+        Operands operands;
+        for (const float a : numbers)
+            for (const float b : numbers) operands.add(a, b, numbers[(random.next() >> 33) % numbers.size()]);
+        operands.pad();
+        const NumberBuild build = {format};
+        CAPTURE(build.name(), kSeed);
+        CHECK(report_differences(operands, NumberRunner(build).run("operations", operands, 6),
+                                 expected_results(format, operands)) == "");
+    }
+}
+
+}  // namespace raya

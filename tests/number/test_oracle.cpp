@@ -1,0 +1,66 @@
+// The six operations of the reduced formats against MPFR, on random operands, by bits. RAYA_NUMBER_CASES=1000000 asks
+// for that many rows in each format, for more formats and for all widths of lanes.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "number/compare.hpp"
+#include "number/random_operands.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kUsualRows = 40'000;
+constexpr std::uint64_t kSeed = 1993;
+
+struct Size {
+    int exponent_bits, fraction_bits;
+};
+
+/// Y = 4 .. 21 and every X, in both roundings: the smallest, the largest and the SPA's format, and, as the layer has
+/// other code for X = 8 and for Y > 15, both of these with and without the other.
+std::vector<NumberFormat> tested_formats() {
+    std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
+    if (is_long_run(kUsualRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
+    std::vector<NumberFormat> formats;
+    for (const Size& size : sizes)
+        for (const bool truncates : {false, true})
+            formats.push_back({size.exponent_bits, size.fraction_bits, truncates});
+    return formats;
+}
+
+/// All widths in a long run; else the widest, and a single lane for the formats of which much depends.
+std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
+    if (is_long_run(kUsualRows)) return {1, 4, 8, 16};
+    if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, 16};
+    return {16};
+}
+
+}  // namespace
+
+TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number][oracle]") {
+    for (const NumberFormat& format : tested_formats()) {
+        const Operands operands = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
+        const Results expected = expected_results(format, operands);
+        for (const std::uint32_t lanes : tested_lanes(format)) {
+            const NumberBuild build = {format, lanes};
+            CAPTURE(build.name(), kSeed);
+            CHECK(report_differences(operands, NumberRunner(build).run("operations", operands, 6), expected) == "");
+        }
+    }
+}
+
+TEST_CASE("a device that errs in division and square root gives the same bits when refined", "[number][refined]") {
+    for (const NumberFormat& format :
+         {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
+        for (const std::uint32_t lanes : {1u, 16u}) {
+            if (lanes == 1 && format.fraction_bits != 15) continue;
+            const Operands operands = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
+            const NumberBuild build = {format, lanes, true};
+            CAPTURE(build.name(), kSeed);
+            CHECK(report_differences(operands, NumberRunner(build).run("operations", operands, 6),
+                                     expected_results(format, operands)) == "");
+        }
+}
+
+}  // namespace raya
