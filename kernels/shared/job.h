@@ -1,6 +1,6 @@
 // The job: all that the host broadcasts to every PE, as 32-bit words. A header, then the scene in sections of fixed strides:
 //
-//   raya_job | surfaces | lights | spheres | planes | polygons | cones | outlines of polygons | normals of patches
+//   raya_job | surfaces | lights | spheres | planes | cones | polygons | each polygon's outline and, of a patch, normals
 //
 // Every word holds a float (as its bits) or an unsigned integer. Objects are numbered through spheres, planes, polygons and
 // cones. "at" words are distances from the job's first word.

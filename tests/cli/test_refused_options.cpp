@@ -82,8 +82,7 @@ TEST_CASE("bench and generate refuse numbers outside their ranges", "[cli]") {
     check_refused(outputs, {"generate", "balls", "--level", "7", "-o", scene}, 2, {"level 7", "0..6"});
     check_refused(outputs, {"generate", "balls", "--level", "-1", "-o", scene}, 2, {"level -1", "0..6"});
     check_refused(outputs, {"generate", "balls"}, 2, {"--output is required"});
-    check_refused(outputs, {"generate", "uniform", "9", "--voxels", "2x2", "-o", scene}, 2,
-                  {"--voxels 2x2", "XxYxZ"});
+    check_refused(outputs, {"generate", "uniform", "9", "--voxels", "2x2", "-o", scene}, 2, {"--voxels 2x2", "XxYxZ"});
     check_refused(outputs, {"generate", "uniform", "9", "--voxels", "257x1x1", "-o", scene}, 2,
                   {"257 voxels", "1..256"});
     check_refused(outputs, {"generate", "uniform", "9", "-o", scene}, 2, {"--voxels is required"});
@@ -130,7 +129,8 @@ TEST_CASE("empty values, negative counts and one file named twice are refused", 
     const std::string scene = std::string(RAYA_SOURCE_DIR) + "/scenes/planes.nff", image = (outputs / "x.pfm").string();
     for (const char* option : {"--lanes", "--size", "--device", "--format", "--report"})
         check_refused(outputs, {"render", scene, "-o", image, option, ""}, 2, {option, "must not be empty"});
-    check_refused(outputs, {"generate", "random", "5", "--seed", "-1", "-o", image}, 2, {"--seed", "'-1' is not a whole number"});
+    check_refused(outputs, {"generate", "random", "5", "--seed", "-1", "-o", image}, 2,
+                  {"--seed", "'-1' is not a whole number"});
     check_refused(outputs, {"render", scene, "-o", image, "--cost", image}, 2, {"named twice"});
     check_refused(outputs, {"render", scene, "-o", image, "--report", scene}, 2, {"planes.nff", "named twice"});
 }

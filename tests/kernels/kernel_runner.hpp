@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -40,8 +41,6 @@ class KernelRunner {
     /// build.
     KernelRunner(const std::string& file, const Variant& variant)
         : lanes_(variant.lanes), session_(choose_device("")), program_(build(file, variant)) {}
-
-    Session& session() { return session_; }
 
     /// A buffer that holds `values`.
     template <class T>

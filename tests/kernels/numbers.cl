@@ -1,7 +1,10 @@
-// The number layer by itself. A work-group is one work-item, which takes the next V rows of numbers; their number is a multiple of V.
+// The number layer by itself. A work-group is one work-item, which takes the next V rows of numbers; there are a multiple
+// of V of them.
 #include "number/power.clh"
 
-static inline void store_bits(__global uint* to, uint stride, real value) { store_index(to, stride, as_lanes_uint(value)); }
+static inline void store_bits(__global uint* to, uint stride, real value) {
+    store_index(to, stride, as_lanes_uint(value));
+}
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void arithmetic(__global const float* restrict operands,  // [row][3]: a, b, c

@@ -44,19 +44,21 @@ inline std::vector<Vec3> random_outline(SplitMix& random, int corners) {
     return outline;
 }
 
-/// Surfaces of every kind: matte, gloss, glass, and a checker, which only flat objects take.
+/// Surfaces of every kind: matte, gloss, glass, glass that does not reflect, and a checker, which only flat objects
+/// take.
 inline std::vector<Surface> every_surface() {
-    Surface matte, gloss, glass, checker;
+    Surface matte, gloss, glass, clear, checker;
     matte.colour = {0.9, 0.3, 0.1};
     matte.diffuse = 0.75;
     gloss = {{0.2, 0.5, 0.8}, 0.5, 0.4, 30, 0, 1, {}};
     glass = {{0.9, 1, 0.8}, 0.125, 0.25, 100, 0.7, 1.5, {}};
+    clear = {{1, 1, 1}, 0.05, 0, 0, 0.92, 1.25, {}};
     checker.checker = Checker{{0.9, 0.8, 0.7}, {0.1, 0.2, 0.3}, 0.4};
-    return {matte, gloss, glass, checker};
+    return {matte, gloss, glass, clear, checker};
 }
 
-inline int round_surface(SplitMix& random) { return static_cast<int>(whole_uniform(random, 3)); }
-inline int flat_surface(SplitMix& random) { return static_cast<int>(whole_uniform(random, 4)); }
+inline int round_surface(SplitMix& random) { return static_cast<int>(whole_uniform(random, 4)); }
+inline int flat_surface(SplitMix& random) { return static_cast<int>(whole_uniform(random, 5)); }
 
 inline void add_sphere(Scene& scene, SplitMix& random, double sign) {
     scene.spheres.push_back({random_point(random, 2), sign * random.uniform(0.2, 0.9), round_surface(random)});
@@ -71,11 +73,14 @@ inline void add_polygon(Scene& scene, SplitMix& random) {
     scene.polygons.push_back({random_outline(random, corners), {}, flat_surface(random)});
 }
 
+/// Its shading normals lean by up to more than a right angle, so that some look away from the side that is seen.
 inline void add_patch(Scene& scene, SplitMix& random) {
     Polygon patch{random_outline(random, 3 + static_cast<int>(whole_uniform(random, 3))), {}, flat_surface(random)};
     const Vec3 normal = newell_normal(patch.vertices).normalized();
+    const Vec3 along = normal.cross(random_direction(random)).normalized();
+    const Vec3 mean = (random.uniform(-0.5, 2) * normal + along).normalized();
     for (std::size_t i = 0; i < patch.vertices.size(); ++i)
-        patch.normals.push_back((normal + 0.5 * random_direction(random)).normalized());
+        patch.normals.push_back((mean + 0.4 * random_direction(random)).normalized());
     scene.polygons.push_back(patch);
 }
 

@@ -32,7 +32,7 @@ class PackedScene {
         return {x, y, real(at + 2)};
     }
 
-    /// How many words nothing has read, and how many were read more than once.
+    /// Words that nothing has read; words that were read more than once.
     std::size_t unread() const { return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), 0)); }
     std::size_t shared() const {
         return static_cast<std::size_t>(std::count_if(reads_.begin(), reads_.end(), [](int n) { return n > 1; }));
