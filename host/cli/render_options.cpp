@@ -31,7 +31,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--format", o.format,
                     "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
-                    "fraction bits, t truncates; default: the machine's, e6m15")
+                    "fraction bits, t truncates; default: e6m15 on spa, fp32 on grande")
         ->type_name("NAME");
     command.add_option("--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
         ->type_name("N");

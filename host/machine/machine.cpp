@@ -17,9 +17,17 @@ const std::vector<Machine>& machines() {
          .topology = "ring+bus",
          .pes = 256,
          .offset = 16,
-         .pe_memory_bytes = 32 * 1024},
-        // ours: the same array without the memory limit, one PE a column
-        {.name = "grande", .title = "grande", .topology = "ring+bus", .pes = {}, .offset = 16, .pe_memory_bytes = {}},
+         .pe_memory_bytes = 32 * 1024,
+         .format = {6, 15, false}},  // 22 bits; how they are divided is not printed in the paper
+        // ours: the same array without the memory limit, one PE a column; fp32, as it is there for scenes that no SPA
+        // could hold
+        {.name = "grande",
+         .title = "grande",
+         .topology = "ring+bus",
+         .pes = {},
+         .offset = 16,
+         .pe_memory_bytes = {},
+         .format = {}},
     };
     return all;
 }

@@ -23,7 +23,7 @@ struct Machine {
     std::uint32_t offset = 0;                      // p of the cyclic mapping
     std::optional<std::uint32_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
-    NumberFormat format{6, 15, false};  // of a PE: e6m15, 22 bits
+    NumberFormat format{};  // that its PEs compute in
 };
 
 /// The machines that `--machine` knows, the default first.

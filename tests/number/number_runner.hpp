@@ -45,10 +45,16 @@ inline const std::vector<std::string>& operation_names() {
     return names;
 }
 
+/// 16, or what RAYA_NUMBER_LANES says: some compilers take very long for wide kernels.
+inline std::uint32_t widest_lanes() {
+    const char* text = std::getenv("RAYA_NUMBER_LANES");
+    return text == nullptr ? 16 : static_cast<std::uint32_t>(std::stoul(text));
+}
+
 /// One way to build the layer.
 struct NumberBuild {
     NumberFormat format;
-    std::uint32_t lanes = 16;
+    std::uint32_t lanes = widest_lanes();
     bool refines_division = false;      // RAYA_EXACT_DIVIDE=0, on a device whose division and root err
     std::filesystem::path folder = {};  // of the kernels; empty: as embedded
 

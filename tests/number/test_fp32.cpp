@@ -44,12 +44,12 @@ void check_fp32(const NumberBuild& build) {
 
 TEST_CASE("fp32 gives the bits of IEEE 754 from end to end of its range", "[number][fp32]") {
     check_fp32({kFp32, 1});
-    check_fp32({kFp32, 16});
+    check_fp32({kFp32, widest_lanes()});
 }
 
 TEST_CASE("fp32 gives the same bits on a device that errs, when refined", "[number][fp32][refined]") {
     check_fp32({kFp32, 1, true});
-    check_fp32({kFp32, 16, true});
+    check_fp32({kFp32, widest_lanes(), true});
 }
 
 }  // namespace raya

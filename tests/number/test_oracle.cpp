@@ -32,8 +32,8 @@ std::vector<NumberFormat> tested_formats() {
 /// All widths in a long run; else the widest, and a single lane for the formats of which much depends.
 std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
     if (is_long_run(kUsualRows)) return {1, 4, 8, 16};
-    if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, 16};
-    return {16};
+    if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, widest_lanes()};
+    return {widest_lanes()};
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number]
 TEST_CASE("a device that errs in division and square root gives the same bits when refined", "[number][refined]") {
     for (const NumberFormat& format :
          {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
-        for (const std::uint32_t lanes : {1u, 16u}) {
+        for (const std::uint32_t lanes : {1u, widest_lanes()}) {
             if (lanes == 1 && format.fraction_bits != 15) continue;
             const Operands operands = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
             const NumberBuild build = {format, lanes, true};

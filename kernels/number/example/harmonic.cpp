@@ -1,0 +1,102 @@
+// How another OpenCL program uses the number layer: the harmonic series, which diverges, but not on a computer.
+//   harmonic FOLDER     FOLDER holds number/ and number/example/
+// Needs OpenCL alone:  c++ -std=c++17 harmonic.cpp -lOpenCL
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace {
+
+void check(cl_int error, const char* what) {
+    if (error == CL_SUCCESS) return;
+    std::fprintf(stderr, "%s failed: OpenCL error %d\n", what, error);
+    std::exit(1);
+}
+
+cl_device_id first_device() {
+    cl_platform_id platforms[16];
+    cl_uint count = 0;
+    check(clGetPlatformIDs(16, platforms, &count), "looking for platforms");
+    cl_device_id device = nullptr;
+    for (cl_uint i = 0; i < count && i < 16 && device == nullptr; ++i)
+        clGetDeviceIDs(platforms[i], CL_DEVICE_TYPE_ALL, 1, &device, nullptr);  // a platform may have none
+    if (device == nullptr) check(CL_DEVICE_NOT_FOUND, "looking for a device");
+    return device;
+}
+
+/// The options that a format needs; division is refined where the device's own is not correctly rounded.
+std::string build_options(cl_device_id device, const std::string& folder, int exponent_bits, int fraction_bits) {
+    cl_device_fp_config floats = 0;
+    check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "asking for CL_FP_*");
+    const bool exact = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    return "-I " + folder + " -DRAYA_EXPONENT_BITS=" + std::to_string(exponent_bits) +
+           " -DRAYA_FRACTION_BITS=" + std::to_string(fraction_bits) +
+           (exact ? " -cl-fp32-correctly-rounded-divide-sqrt" : " -DRAYA_EXACT_DIVIDE=0");
+}
+
+cl_kernel build(cl_context context, cl_device_id device, const std::string& folder, const std::string& options) {
+    std::ifstream file(folder + "/number/example/harmonic.cl");
+    const std::string source{std::istreambuf_iterator<char>(file), {}};
+    const char* text = source.c_str();
+    cl_int error = CL_SUCCESS;
+    cl_program program = clCreateProgramWithSource(context, 1, &text, nullptr, &error);
+    check(error, "making the program");
+    check(clBuildProgram(program, 1, &device, options.c_str(), nullptr, nullptr), options.c_str());
+    cl_kernel kernel = clCreateKernel(program, "harmonic", &error);
+    check(error, "making the kernel");
+    clReleaseProgram(program);
+    return kernel;
+}
+
+/// Runs the kernel and prints one line.
+void run(cl_context context, cl_command_queue queue, cl_kernel kernel, const char* name) {
+    cl_int error = CL_SUCCESS;
+    cl_mem sum = clCreateBuffer(context, CL_MEM_WRITE_ONLY, sizeof(cl_float), nullptr, &error);
+    check(error, "making a buffer");
+    cl_mem terms = clCreateBuffer(context, CL_MEM_WRITE_ONLY, sizeof(cl_uint), nullptr, &error);
+    check(error, "making a buffer");
+    check(clSetKernelArg(kernel, 0, sizeof sum, &sum), "setting an argument");
+    check(clSetKernelArg(kernel, 1, sizeof terms, &terms), "setting an argument");
+    const size_t one = 1;
+    check(clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &one, &one, 0, nullptr, nullptr), "running the kernel");
+    cl_float found_sum = 0;
+    cl_uint found_terms = 0;
+    check(clEnqueueReadBuffer(queue, sum, CL_TRUE, 0, sizeof found_sum, &found_sum, 0, nullptr, nullptr), "reading");
+    check(clEnqueueReadBuffer(queue, terms, CL_TRUE, 0, sizeof found_terms, &found_terms, 0, nullptr, nullptr),
+          "reading");
+    std::printf("%-18s %8u terms, sum %.7g\n", name, found_terms, found_sum);
+    clReleaseMemObject(sum);
+    clReleaseMemObject(terms);
+    clReleaseKernel(kernel);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: %s FOLDER (the one that holds number/)\n", argv[0]);
+        return 2;
+    }
+    struct {
+        const char* name;
+        int exponent_bits, fraction_bits;
+    } const formats[] = {{"e8m7 (bfloat16)", 8, 7}, {"e5m10 (fp16)", 5, 10}, {"e6m15 (SPA)", 6, 15}, {"fp32", 8, 23}};
+    cl_device_id device = first_device();
+    cl_int error = CL_SUCCESS;
+    cl_context context = clCreateContext(nullptr, 1, &device, nullptr, nullptr, &error);
+    check(error, "making a context");
+    cl_command_queue queue = clCreateCommandQueue(context, device, 0, &error);
+    check(error, "making a queue");
+    for (const auto& format : formats) {
+        const std::string options = build_options(device, argv[1], format.exponent_bits, format.fraction_bits);
+        run(context, queue, build(context, device, argv[1], options), format.name);
+    }
+    clReleaseCommandQueue(queue);
+    clReleaseContext(context);
+    return 0;
+}
