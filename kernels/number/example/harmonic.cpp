@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     struct {
         const char* name;
         int exponent_bits, fraction_bits;
-    } const formats[] = {{"e8m7 (bfloat16)", 8, 7}, {"e5m10 (fp16)", 5, 10}, {"e6m15 (SPA)", 6, 15}, {"fp32", 8, 23}};
+    } const formats[] = {{"e8m7 (bfloat16)", 8, 7}, {"e5m10 (fp16)", 5, 10}, {"e6m15 (SPA)", 6, 15}};
     cl_device_id device = first_device();
     cl_int error = CL_SUCCESS;
     cl_context context = clCreateContext(nullptr, 1, &device, nullptr, nullptr, &error);
