@@ -59,7 +59,7 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
                                "in pixels, 0..W-1; default: 16",
                                "--mapping NAME=cyclic",
                                "cyclic|block=cyclic",
-                               "--format TEXT=fp32",
+                               "--format NAME",
                                "0..31; default: 8",
                                "centres|corners=centres",
                                "1, 4, 8 or 16; default",
@@ -103,7 +103,7 @@ TEST_CASE("a render ends with a short summary", "[cli]") {
     INFO(out);
     CHECK(files.run().err.empty());
     CHECK(std::count(out.begin(), out.end(), '\n') <= 8);
-    for (const char* text : {"20 x 12 pixels on spa (20 PEs, cyclic mapping, offset 16), fp32, 8 bounces",
+    for (const char* text : {"20 x 12 pixels on spa (20 PEs, cyclic mapping, offset 16), e6m15, 8 bounces",
                              "240 primary", "u = ", "efficiency", "in each PE of 32 KB", "Mrays/s", "(4 lanes)"})
         CHECK_THAT(out, Catch::Contains(text));
     CHECK_THAT(out, Catch::Contains(report["image"]["hash"].get<std::string>()));
@@ -147,21 +147,25 @@ TEST_CASE("the same seed generates the same bytes, another seed others", "[cli]"
     CHECK(file_contents(folder / "a") != file_contents(folder / "c"));
 }
 
-TEST_CASE("bench prints a row for each number of lanes, all of one image", "[cli]") {
+TEST_CASE("bench prints a row for each format and number of lanes, one image a format, and the operations", "[cli]") {
     const std::string out = succeed({"bench", "--samples", "1", "--size", "64"}).out;
     INFO(out);
     CHECK_THAT(out, Catch::Contains("spheres.nff") && Catch::Contains("64 x 64 pixels, 256 PEs, 8 bounces"));
     const std::vector<Words> rows = lines_that_start_with(out, "trace");
     const Words lanes = {"1", "4", "8", "16"};
-    REQUIRE(rows.size() == lanes.size());
+    REQUIRE(rows.size() == 2 * lanes.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        REQUIRE(rows[i].size() == 11);
-        CHECK(rows[i][1] == lanes[i]);
-        CHECK(rows[i][3] == "fp32");
-        CHECK(std::stod(rows[i][4]) > 0);         // Mrays/s of the best sample
-        CHECK(rows[i][4] == rows[i][5]);          // one sample is the best and the median
-        CHECK(rows[i].back() == rows[0].back());  // hash
+        REQUIRE(rows[i].size() == 12);
+        CHECK(rows[i][1] == (i < lanes.size() ? "fp32" : "e6m15"));
+        CHECK(rows[i][2] == lanes[i % lanes.size()]);
+        CHECK(std::stod(rows[i][4]) > 0);                                 // Mrays/s of the best sample
+        CHECK(rows[i][4] == rows[i][5]);                                  // one sample is the best and the median
+        CHECK((rows[i].back() == rows[0].back()) == (i < lanes.size()));  // hash
     }
+    CHECK(lines_that_start_with(out, "Gop/s").size() == 1);
+    CHECK(lines_that_start_with(
+              succeed({"bench", "--samples", "1", "--size", "32", "--lanes", "4", "--format", "e5m10t"}).out, "e5m10t")
+              .size() == 1);
 }
 
 }  // namespace

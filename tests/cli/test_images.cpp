@@ -33,7 +33,7 @@ TEST_CASE("PNG and EXR say how they were made", "[cli]") {
         CHECK(text("raya:machine") == "spa");
         CHECK(text("raya:mapping") == "cyclic");
         CHECK(text("raya:offset") == "3");
-        CHECK(text("raya:format") == "fp32");
+        CHECK(text("raya:format") == "e6m15");
         CHECK(std::stod(text("raya:u")) == Approx(u).margin(0.5e-6));  // six digits after the point
     }
 }

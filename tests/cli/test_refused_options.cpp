@@ -24,7 +24,9 @@ TEST_CASE("a name that the program does not know is refused with those that it k
     check_render_options({{{"--machine", "sparc"}, {"'sparc'", "spa, grande"}},
                           {{"--mapping", "spiral"}, {"--mapping spiral", "cyclic, column"}},
                           {{"--fold", "diagonal"}, {"--fold diagonal", "cyclic or block"}},
-                          {{"--format", "e6m15"}, {"--format e6m15", "fp32"}},
+                          {{"--format", "e4m15"}, {"--format e4m15", "fp32", "X = 5..8"}},
+                          {{"--format", "e6m22"}, {"--format e6m22", "Y = 4..21"}},
+                          {{"--format", "e6m15x"}, {"--format e6m15x", "spa22"}},
                           {{"--sampling", "random"}, {"--sampling random", "centres or corners"}}});
 }
 

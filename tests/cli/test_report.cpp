@@ -191,7 +191,7 @@ TEST_CASE("the report says what was asked for", "[cli]") {
     CHECK(report["machine"]["mapping"] == "cyclic");
     CHECK(report["machine"]["offset"] == 3);
     CHECK(report["machine"]["fold"] == "block");
-    CHECK(report["machine"]["format"] == "fp32");
+    CHECK(report["machine"]["format"] == "e6m15");
     CHECK(report["machine"]["bounces"] == 2);
     CHECK(report["machine"]["pe_memory_bytes"] == 32768);
     CHECK(report["machine"]["pe_memory_used_bytes"] <= 32768);
