@@ -38,22 +38,13 @@ struct BenchRow {
     double median() const { return seconds[seconds.size() / 2]; }
 };
 
-double trace_seconds(const RingResult& result) {
-    double ns = 0;
-    for (const LabelSummary& c : result.commands)
-        if (c.label == "trace") ns += static_cast<double>(c.total_ns);
-    return ns * 1e-9;
-}
-
 // One sample is at least 20 ms of kernel time, so that the clock and the launch do not count.
 double sample_seconds(RingRenderer& renderer) {
     constexpr double kLeastSeconds = 0.02;
     double seconds = 0;
     int images = 0;
     while (seconds < kLeastSeconds) {
-        const RingResult result = renderer.render();
-        const double once = trace_seconds(result);
-        seconds += once > 0 ? once : result.render_s;  // a device that does not time its commands: the host's clock
+        seconds += trace_seconds(renderer.render());
         ++images;
     }
     return seconds / images;

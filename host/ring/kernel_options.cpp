@@ -55,6 +55,7 @@ std::vector<std::string> format_options(const NumberFormat& format, const Device
         all.push_back(fmt::format("-DRAYA_TRUNCATE={:d}", format.truncates));
     }
     all.push_back(fmt::format("-DRAYA_EXACT_DIVIDE={:d}", device.correctly_rounded_divide_sqrt));
+    all.push_back(fmt::format("-DRAYA_EXACT_FMA={:d}", device.fused_multiply_add));
     if (device.correctly_rounded_divide_sqrt) all.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
     return all;
 }

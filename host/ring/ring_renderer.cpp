@@ -44,6 +44,13 @@ std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, st
 
 }  // namespace
 
+double trace_seconds(const RingResult& result) {
+    double ns = 0;
+    for (const LabelSummary& command : result.commands)
+        if (command.label == "trace") ns += static_cast<double>(command.total_ns);
+    return ns > 0 ? ns * 1e-9 : result.render_s;
+}
+
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
       settings_(checked(settings, session.device())),

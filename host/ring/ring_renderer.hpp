@@ -52,6 +52,9 @@ struct RingResult {
     std::vector<LabelSummary> commands;
 };
 
+/// Seconds that the kernels of one image took on the device; by the host's clock where the device does not time its commands.
+double trace_seconds(const RingResult& result);
+
 /// Called now and then with the share of the pixels that are done, 0..1.
 using ProgressCallback = std::function<void(double)>;
 

@@ -36,13 +36,6 @@ RingSettings ring_settings(const FormatsSettings& settings) {
     return ring;
 }
 
-double kernel_seconds(const RingResult& result) {
-    double ns = 0;
-    for (const LabelSummary& command : result.commands)
-        if (command.label == "trace") ns += static_cast<double>(command.total_ns);
-    return ns > 0 ? ns * 1e-9 : result.render_s;
-}
-
 // Renderers for one scene, fp32's first.
 std::vector<std::unique_ptr<RingRenderer>> make_renderers(Session& session, const Scene& scene, RingSettings ring,
                                                           const std::vector<NumberFormat>& formats, Steps& steps) {
@@ -58,7 +51,7 @@ std::vector<std::unique_ptr<RingRenderer>> make_renderers(Session& session, cons
 // What a first render tells of a format.
 FormatRow first_row(const NumberFormat& format, const reference::Image& expected, const RingResult& result) {
     return {format, image_difference(expected.pixels, result.image.rgb, kShownStep), pixel_hash(result.image),
-            kernel_seconds(result), 0};
+            trace_seconds(result), 0};
 }
 
 SceneRows study_scene(Session& session, const LabelledScene& labelled, const RingSettings& ring,
@@ -75,7 +68,7 @@ SceneRows study_scene(Session& session, const LabelledScene& labelled, const Rin
             study.lanes = result.lanes;
             study.group_size = result.group_size;
             if (sample == 0) scene.rows.push_back(first_row(formats[i], expected, result));
-            scene.rows[i].kernel_s = std::min(scene.rows[i].kernel_s, kernel_seconds(result));
+            scene.rows[i].kernel_s = std::min(scene.rows[i].kernel_s, trace_seconds(result));
             steps.done();
         }
     for (FormatRow& row : scene.rows) row.ratio_to_fp32 = row.kernel_s / scene.rows.front().kernel_s;

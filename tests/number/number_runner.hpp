@@ -112,7 +112,8 @@ class NumberRunner {
                                             fmt::format("-DRAYA_EXPONENT_BITS={}", build.format.exponent_bits),
                                             fmt::format("-DRAYA_FRACTION_BITS={}", build.format.fraction_bits),
                                             fmt::format("-DRAYA_TRUNCATE={:d}", build.format.truncates),
-                                            fmt::format("-DRAYA_EXACT_DIVIDE={:d}", exact)};
+                                            fmt::format("-DRAYA_EXACT_DIVIDE={:d}", exact),
+                                            fmt::format("-DRAYA_EXACT_FMA={:d}", session_.device().fused_multiply_add)};
         if (exact) options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
         if (build.refines_division) options.emplace_back("-DRAYA_TEST_DEVICE_ERROR");
         if (const char* more = std::getenv("RAYA_NUMBER_OPTIONS")) options.emplace_back(more);

@@ -37,7 +37,7 @@ const std::vector<Mutation>& mutations() {
         {"no saturation", "reduced.clh", "min(as_lanes_uint(size), largest)", "as_lanes_uint(size)", spa, 2},
         {"flushes the smallest binade", "reduced.clh", "((129 - (1 <<", "((130 - (1 <<", spa, 2},
         {"keeps a binade too many", "reduced.clh", "((129 - (1 <<", "((128 - (1 <<", spa, 3},
-        {"multiply, then add", "reduced.clh", "const real z = fma(a, b, c);", "const real z = a * b + c;", spa, 5},
+        {"multiply, then add", "reduced.clh", "const real z = fp32_fma(a, b, c);", "const real z = a * b + c;", spa, 5},
         {"residual of c dropped", "reduced.clh", " + sum_error(c, -z, d)", "", spa, 5},
         {"residual of a root dropped", "reduced.clh", "num_fit(z, fma(-z, z, x))", "num_fit(z, num_all(0.0f))", spa, 4},
         {"a product too small forgotten", "scaled.clh", "choose(hint, sign * 0x1p-50f, scaled)", "scaled", wide, 5},

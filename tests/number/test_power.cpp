@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kSeed = 5;
 constexpr std::size_t kRows = 8000;
 
-/// x in (0, 4), a third of them crowded below 1; n in [0, 1000), many small; y in (-30, 0].
+/// x in (0, 4), a third of them crowded below 1; n in [0, 1000), many small; y in [-126, 0].
 Operands power_operands(const NumberFormat& format) {
     SplitMix random(kSeed);
     const double smallest = std::ldexp(1, range_of(format).lowest);
@@ -25,7 +25,8 @@ Operands power_operands(const NumberFormat& format) {
     while (operands.rows() < kRows) {
         const double crowded = 1 - std::exp2(random.uniform(-format.fraction_bits - 1, 0));
         const double x = operands.rows() % 3 == 0 ? crowded : std::exp2(random.uniform(range_of(format).lowest, 2));
-        const double n = std::exp2(random.uniform(-3, 10)), y = random.uniform(-29.9, 0);
+        const double n = std::exp2(random.uniform(-3, 10));
+        const double y = random.uniform(operands.rows() % 2 == 0 ? -30 : -126, 0);
         operands.add(in_format(std::max(x, smallest)), in_format(n), in_format(y));
     }
     operands.pad();
@@ -56,7 +57,8 @@ class PowerBounds {
 };
 
 const std::vector<NumberFormat>& power_formats() {
-    static const std::vector<NumberFormat> formats = {{5, 4, true}, {6, 15, false}, {6, 15, true}, {8, 21, false}};
+    static const std::vector<NumberFormat> formats = {
+        {5, 4, true}, {8, 5, true}, {6, 15, false}, {6, 15, true}, {8, 21, false}};
     return formats;
 }
 

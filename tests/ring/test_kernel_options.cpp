@@ -26,14 +26,30 @@ const DeviceInfo kCpu = a_device("cpu", 8, 4096);
 }  // namespace
 
 TEST_CASE("every tunable of the kernels is given a value", "[ring]") {
-    const KernelOptions plain;
-    CHECK(build_options(plain, kCpu) ==
-          std::vector<std::string>{"-cl-std=CL1.2", "-DRAYA_LANES=1", "-DRAYA_GROUP=1", "-DRAYA_BOUNCES=8",
-                                   "-DRAYA_WORDS_LOCAL=1", "-DRAYA_POLYGONS=1", "-DRAYA_PATCHES=1", "-DRAYA_CONES=1"});
-    const KernelOptions other{16, 64, 31, false, false, false, false};
-    CHECK(build_options(other, kCpu) ==
-          std::vector<std::string>{"-cl-std=CL1.2", "-DRAYA_LANES=16", "-DRAYA_GROUP=64", "-DRAYA_BOUNCES=31",
-                                   "-DRAYA_WORDS_LOCAL=0", "-DRAYA_POLYGONS=0", "-DRAYA_PATCHES=0", "-DRAYA_CONES=0"});
+    using Options = std::vector<std::string>;
+    CHECK(build_options({}, kCpu) == Options{"-cl-std=CL1.2", "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0",
+                                             "-DRAYA_LANES=1", "-DRAYA_GROUP=1", "-DRAYA_BOUNCES=8",
+                                             "-DRAYA_WORDS_LOCAL=1", "-DRAYA_POLYGONS=1", "-DRAYA_PATCHES=1",
+                                             "-DRAYA_CONES=1"});
+    const KernelOptions other{.lanes = 16,
+                              .group_size = 64,
+                              .bounces = 31,
+                              .format = {6, 15, true},
+                              .words_local = false,
+                              .filter = true,
+                              .polygons = false,
+                              .patches = false,
+                              .cones = false};
+    CHECK(build_options(other, kCpu) == Options{"-cl-std=CL1.2", "-DRAYA_EXPONENT_BITS=6", "-DRAYA_FRACTION_BITS=15",
+                                                "-DRAYA_TRUNCATE=1", "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0",
+                                                "-DRAYA_LANES=16", "-DRAYA_GROUP=64", "-DRAYA_BOUNCES=31",
+                                                "-DRAYA_WORDS_LOCAL=0", "-DRAYA_POLYGONS=0", "-DRAYA_PATCHES=0",
+                                                "-DRAYA_CONES=0", "-DRAYA_FILTER=1"});
+    DeviceInfo exact = kCpu;
+    exact.correctly_rounded_divide_sqrt = exact.fused_multiply_add = true;
+    const Options options = format_options({}, exact);
+    CHECK(options == Options{"-cl-std=CL1.2", "-DRAYA_EXACT_DIVIDE=1", "-DRAYA_EXACT_FMA=1",
+                             "-cl-fp32-correctly-rounded-divide-sqrt"});
 }
 
 TEST_CASE("division is asked to be correctly rounded only where the device offers it", "[ring]") {

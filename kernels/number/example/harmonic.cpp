@@ -29,13 +29,15 @@ cl_device_id first_device() {
     return device;
 }
 
-/// The options that a format needs; division is refined where the device's own is not correctly rounded.
+/// The options that a format needs. Where the device's own division and fma are not to be relied on, the layer mends
+/// them.
 std::string build_options(cl_device_id device, const std::string& folder, int exponent_bits, int fraction_bits) {
     cl_device_fp_config floats = 0;
     check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "asking for CL_FP_*");
     const bool exact = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     return "-I " + folder + " -DRAYA_EXPONENT_BITS=" + std::to_string(exponent_bits) +
            " -DRAYA_FRACTION_BITS=" + std::to_string(fraction_bits) +
+           ((floats & CL_FP_FMA) != 0 ? "" : " -DRAYA_EXACT_FMA=0") +
            (exact ? " -cl-fp32-correctly-rounded-divide-sqrt" : " -DRAYA_EXACT_DIVIDE=0");
 }
 
