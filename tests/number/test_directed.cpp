@@ -73,7 +73,7 @@ std::vector<Case> sums(const Landmarks& f) {
     };
 }
 
-/// Products, quotients and roots.
+/// Products.
 std::vector<Case> products(const Landmarks& f) {
     const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
     return {
@@ -93,6 +93,13 @@ std::vector<Case> products(const Landmarks& f) {
         {"just below the smallest: flushed, not rounded to it", kMul, low, below, 0, 0.0, 0.0},
         {"a far-away bit below the smallest: rounds to it, or is flushed", kMul, -low * above, 1 - f.unit, 0, -low,
          -0.0},
+    };
+}
+
+/// Quotients and roots.
+std::vector<Case> quotients(const Landmarks& f) {
+    const double above = 1 + f.unit, below = 1 - f.unit / 2, low = f.smallest, high = f.largest;
+    return {
         {"x / 0 saturates", kDiv, 1, 0.0, 0, high, high},
         {"x / -0 saturates with the sign of both", kDiv, 1, -0.0, 0, -high, -high},
         {"-x / 0", kDiv, -low, 0.0, 0, -high, -high},
@@ -175,7 +182,7 @@ TEST_CASE("ties, carries, cancellation, ends of the range and zeros", "[number][
             both.truncates = truncates;
             const Landmarks landmarks(both);
             std::vector<Case> cases = sums(landmarks);
-            for (const auto& more : {products(landmarks), accumulations(landmarks)})
+            for (const auto& more : {products(landmarks), quotients(landmarks), accumulations(landmarks)})
                 cases.insert(cases.end(), more.begin(), more.end());
             check_cases(both, cases);
         }
