@@ -59,21 +59,21 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
       job_(pack_job(scene, job_settings(settings))),
       share_(largest_share(settings.mapping)),
       memory_(plan_pe_memory(settings.machine, scene.name, job_.words.size(), settings.bounces, share_)),
-      lanes_(settings_.kernels.lanes),
-      group_(settings_.kernels.group_size),
-      slice_(slice_pixels(settings, scene.object_count(), lanes_ * group_, memory_.block_pixels)),
+      slice_(slice_pixels(settings, scene.object_count(), settings_.kernels.lanes * settings_.kernels.group_size,
+                          memory_.block_pixels)),
       words_local_(4 * job_.words.size() + sizeof(cl_uint) <= session.device().local_memory_bytes),
       bus_(session, communication_),
       broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.words.size())),
       pixels_(session.buffer<float>("pixel blocks", 3ull * settings.mapping.pes * memory_.block_pixels)),
       cycles_(session.buffer<std::uint64_t>("pixel cycles", 1ull * settings.mapping.pes * memory_.block_pixels)),
-      events_(session.buffer<std::uint64_t>("events", 1ull * settings.mapping.pes * group_ * RAYA_EVENTS)) {
+      events_(session.buffer<std::uint64_t>("events",
+                                            1ull * settings.mapping.pes * settings_.kernels.group_size * RAYA_EVENTS)) {
     build();
 }
 
 void RingRenderer::build() {
-    const KernelOptions options{.lanes = lanes_,
-                                .group_size = group_,
+    const KernelOptions options{.lanes = settings_.kernels.lanes,
+                                .group_size = settings_.kernels.group_size,
                                 .bounces = settings_.bounces,
                                 .format = settings_.format,
                                 .words_local = words_local_,
@@ -101,8 +101,9 @@ void RingRenderer::build() {
 
 void RingRenderer::launch_trace(const std::string& label, std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
     const LocalMemory<std::uint32_t> memory{words_local_ ? job_.words.size() : 1};
-    session_.launch(label, *trace_, settings_.mapping.pes, group_, broadcast_, static_cast<cl_uint>(job_.words.size()),
-                    block, memory_.block_pixels, begin, end, memory, pixels_, cycles_, events_);
+    session_.launch(label, *trace_, settings_.mapping.pes, settings_.kernels.group_size, broadcast_,
+                    static_cast<cl_uint>(job_.words.size()), block, memory_.block_pixels, begin, end, memory, pixels_,
+                    cycles_, events_);
 }
 
 RingResult RingRenderer::render(const ProgressCallback& progress) {
@@ -174,7 +175,7 @@ void RingRenderer::collect_events(RingResult& result) {
     for (std::size_t i = 0; i < counted.size(); ++i) {
         const std::size_t event = i % RAYA_EVENTS;
         result.events[event] += counted[i];
-        loads[i / RAYA_EVENTS / group_] += cycles[event] * counted[i];
+        loads[i / RAYA_EVENTS / settings_.kernels.group_size] += cycles[event] * counted[i];
     }
     result.load = load_of(std::move(loads));
 }
@@ -182,8 +183,8 @@ void RingRenderer::collect_events(RingResult& result) {
 void RingRenderer::describe(RingResult& result) {
     result.communication = communication_;
     result.pe_memory = memory_;
-    result.lanes = lanes_;
-    result.group_size = group_;
+    result.lanes = settings_.kernels.lanes;
+    result.group_size = settings_.kernels.group_size;
     result.build_options = build_options_;
     result.build_s = build_s_;
     result.commands = session_.profile().summary();

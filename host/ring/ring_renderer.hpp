@@ -52,7 +52,8 @@ struct RingResult {
     std::vector<LabelSummary> commands;
 };
 
-/// Seconds that the kernels of one image took on the device; by the host's clock where the device does not time its commands.
+/// Seconds that the kernels of one image took on the device; by the host's clock where the device does not time its
+/// commands.
 double trace_seconds(const RingResult& result);
 
 /// Called now and then with the share of the pixels that are done, 0..1.
@@ -81,12 +82,11 @@ class RingRenderer {
     void describe(RingResult& result);
 
     Session& session_;
-    RingSettings settings_;
-    bool filter_ = false;  // see sphere_filter_holds
+    RingSettings settings_;  // lanes and group size chosen
+    bool filter_ = false;    // see sphere_filter_holds
     PackedJob job_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;
-    std::uint32_t lanes_ = 1, group_ = 1;
     std::uint32_t slice_ = 0;  // pixels of each share that one launch traces
     bool words_local_ = true;
     std::string build_options_;
