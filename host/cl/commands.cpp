@@ -48,6 +48,15 @@ void Session::check_range(const std::string& label, const std::string& buffer, s
     }
 }
 
+void Session::check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
+                           std::size_t count, std::size_t blocks) {
+    check_range(label, buffer, at.pitch, at.offset, count);
+    if (at.pitch > 0 && blocks > size / at.pitch) {
+        throw std::out_of_range(fmt::format("'{}': {} blocks of {} elements do not lie in buffer '{}' of {}", label,
+                                            blocks, at.pitch, buffer, size));
+    }
+}
+
 template <class Enqueue>
 void Session::submit(const std::string& what, CommandRecord record, Enqueue&& enqueue) {
     if (pending_.size() >= kMaxPending) finish();
@@ -94,6 +103,17 @@ void Session::copy_bytes(const std::string& label, const Place& from, const Plac
     submit(fmt::format("'{}': copying {} bytes of buffer '{}' into buffer '{}'", label, bytes, from.name, to.name),
            {.label = label, .kind = "copy", .bytes = bytes}, [&](cl::Event* event) {
                queue_.enqueueCopyBuffer(from.memory, to.memory, from.offset, to.offset, bytes, nullptr, event);
+           });
+}
+
+void Session::copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
+                        std::size_t to_pitch, std::size_t bytes, std::size_t rows) {
+    if (bytes == 0 || rows == 0) return;
+    submit(fmt::format("'{}': copying {} rows of {} bytes of buffer '{}' into buffer '{}'", label, rows, bytes,
+                       from.name, to.name),
+           {.label = label, .kind = "copy", .bytes = bytes * rows}, [&](cl::Event* event) {
+               queue_.enqueueCopyBufferRect(from.memory, to.memory, {from.offset, 0, 0}, {to.offset, 0, 0},
+                                            {bytes, rows, 1}, from_pitch, 0, to_pitch, 0, nullptr, event);
            });
 }
 

@@ -84,7 +84,7 @@ void print_rows(const std::vector<BenchRow>& rows) {
     std::vector<std::vector<std::string>> table = {{"kernel", "format", "lanes", "group", "Mrays/s best", "median",
                                                     "ms best", "median", "speed-up", "slow-down", "build s", "pixels"}};
     for (const BenchRow& row : rows) {
-        const auto rays = static_cast<double>(ray_count(row.warm_up.events)) * 1e-6;
+        const auto rays = static_cast<double>(ray_count(row.warm_up.all.events)) * 1e-6;
         table.push_back({"trace", format_name(row.format), std::to_string(row.warm_up.lanes),
                          std::to_string(row.warm_up.group_size), fmt::format("{:.1f}", rays / row.best()),
                          fmt::format("{:.1f}", rays / row.median()), fmt::format("{:.2f}", 1e3 * row.best()),
@@ -119,7 +119,7 @@ void print_operations(Session& session, const std::vector<NumberFormat>& formats
 void check_rows(const std::vector<BenchRow>& rows) {
     for (const BenchRow& row : rows) {
         const BenchRow& first = first_of_format(rows, row);
-        if (row.hash == first.hash && row.warm_up.events == first.warm_up.events) continue;
+        if (row.hash == first.hash && row.warm_up.all.events == first.warm_up.all.events) continue;
         throw DeviceError(
             fmt::format("{}: {} lanes give another image than {} lanes: {} and {}; the device or its compiler is wrong",
                         format_name(row.format), row.warm_up.lanes, first.warm_up.lanes, row.hash, first.hash));
@@ -152,7 +152,7 @@ void bench(BenchCommand command) {
     take_samples(rows, command.samples);
     fmt::print("{} on {}: {} x {} pixels, {} PEs, {} bounces, {} rays; {} samples of 20 ms or more after a warm-up\n",
                scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
-               settings.bounces, ray_count(rows.front().warm_up.events), command.samples);
+               settings.bounces, ray_count(rows.front().warm_up.all.events), command.samples);
     print_rows(rows);
     print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())), command.samples);
 }

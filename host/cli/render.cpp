@@ -22,7 +22,7 @@ namespace {
 
 struct RenderCommand {
     RenderOptions render;
-    std::string image, cost, report;
+    std::string image, cost, mask, report;
     bool profile = false, quiet = false;
 };
 
@@ -31,20 +31,37 @@ void check_distinct(const std::vector<std::string>& files) {
     std::set<std::filesystem::path> seen;
     for (const std::string& file : files)
         if (!file.empty() && !file.starts_with("/dev/") && !seen.insert(std::filesystem::weakly_canonical(file)).second)
-            throw UserError(
-                fmt::format("{}: named twice; scene, image, cost image and report must be different files", file));
+            throw UserError(fmt::format(
+                "{}: named twice; scene, image, cost image, mask and report must be different files", file));
 }
 
 void check_targets(const RenderCommand& command) {
-    check_distinct({command.render.scene, command.image, command.cost, command.report});
+    check_distinct({command.render.scene, command.image, command.cost, command.mask, command.report});
     check_writable_target(command.image, kImageExtensions);
     if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
+    if (!command.mask.empty()) check_writable_target(command.mask, kImageExtensions);
+    if (!command.mask.empty() && command.render.antialias != "supersample")
+        throw UserError("--mask shows which pixels were supersampled: give --antialias supersample as well");
     if (!command.report.empty()) check_writable(command.report);
 }
 
 RingResult render_with_progress(RingRenderer& renderer, bool wanted) {
     ProgressBar bar(wanted);
     return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
+}
+
+std::optional<Antialiasing> antialiasing(const RingSettings& settings, const RingResult& result) {
+    const Antialias& a = settings.antialias;
+    if (a.method == AntialiasMethod::kNone) return {};
+    Antialiasing report;
+    report.method = antialias_name(a.method);
+    report.band_pixels = result.pe_memory.band_pixels;
+    if (a.method == AntialiasMethod::kFilter) return report;
+    report.points = points_name(a.points);
+    report.threshold = a.threshold;
+    report.recomputed = result.recomputed;
+    report.recomputed_share = static_cast<double>(result.recomputed) / (1.0 * result.image.width * result.image.height);
+    return report;
 }
 
 RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device,
@@ -64,8 +81,10 @@ RenderReport make_report(const RenderCommand& command, const RingSettings& setti
                       result.pe_memory.bytes()};
     report.device = {device.name,          device.platform, device.version,
                      result.build_options, result.lanes,    result.group_size};
-    report.events = result.events;
-    report.load = result.load;
+    report.events = result.all.events;
+    report.load = result.all.load;
+    for (const Phase& phase : result.phases) report.loads.emplace_back(phase.name, phase.load);
+    report.antialias = antialiasing(settings, result);
     report.communication = result.communication;
     report.measured = {result.build_s, result.render_s, result.commands};
     return report;
@@ -91,7 +110,8 @@ void render(const RenderCommand& command) {
     const RenderReport report = make_report(command, settings, session.device(), result);
     const ImageAttributes attributes = image_attributes(report, scene.name);
     write_image(command.image, result.image, attributes);
-    if (!command.cost.empty()) write_image(command.cost, result.cost, attributes);
+    if (!command.cost.empty()) write_image(command.cost, result.all.cost, attributes);
+    if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
     if (!command.report.empty()) write_whole_file(command.report, to_json(report).dump(2) + "\n");
     if (!command.quiet) fmt::print("{}", human_summary(report));
     if (command.profile) fmt::print("\n{}", profile_table(report.measured.commands));
@@ -111,6 +131,8 @@ void add_render_command(CLI::App& program) {
     add_render_options(*command, options->render);
     command->add_option("--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")
         ->type_name("FILE.exr");
+    command->add_option("--mask", options->mask, "Write which pixels were supersampled, white on black")
+        ->type_name("IMAGE");
     command->add_option("--report", options->report, "Write everything that was counted and measured")
         ->type_name("FILE.json");
     command->add_flag("--profile", options->profile, "Print launches and times of every labelled command");

@@ -41,6 +41,21 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("centres|corners")
         ->capture_default_str();
     command
+        .add_option("--antialias", o.antialias,
+                    "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
+                    "differ from a neighbour; neighbours come by rotating the ring")
+        ->type_name("none|filter|supersample")
+        ->capture_default_str();
+    command
+        .add_option("--threshold", o.threshold,
+                    "Supersample where a colour, clamped to 0..1, differs by this much or more, 0..1; default: 0.125")
+        ->type_name("T");
+    command
+        .add_option("--points", o.points,
+                    "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
+        ->type_name("axes|diagonals")
+        ->capture_default_str();
+    command
         .add_option("--device", o.device,
                     "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
                     "GPU, else the first CPU")
@@ -57,6 +72,22 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("DIR");
 }
 
+namespace {
+
+Antialias antialias_settings(const RenderOptions& o) {
+    Antialias antialias;
+    antialias.method = parse_antialias(o.antialias);
+    antialias.points = parse_points(o.points);
+    if (antialias.method != AntialiasMethod::kSupersample && (o.threshold || o.points != "axes"))
+        throw UserError("--threshold and --points say how to supersample: give --antialias supersample as well");
+    antialias.threshold = o.threshold.value_or(antialias.threshold);
+    if (!(antialias.threshold >= 0 && antialias.threshold <= 1))
+        throw UserError(fmt::format("--threshold {}: must be 0..1", antialias.threshold));
+    return antialias;
+}
+
+}  // namespace
+
 RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     RingSettings settings;
     settings.machine = machine_named(o.machine);
@@ -71,6 +102,7 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
         make_mapping(o.mapping, size[0], size[1], pes, o.offset.value_or(settings.machine.offset % size[0]), o.fold);
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.sampling = o.sampling == "corners" ? Sampling::kCorners : Sampling::kCentres;
+    settings.antialias = antialias_settings(o);
     if (o.lanes == 0u || o.group == 0u) throw UserError("--lanes and --group must be 1 or more");
     settings.kernels.lanes = o.lanes.value_or(0);
     settings.kernels.group_size = o.group.value_or(0);

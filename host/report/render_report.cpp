@@ -22,6 +22,23 @@ Json load_json(const Load& load) {
             {"per_pe", load.per_pe}};
 }
 
+Json loads_json(const RenderReport& r) {
+    Json all = load_json(r.load);
+    for (const auto& [phase, load] : r.loads) all[phase] = load_json(load);
+    return all;
+}
+
+Json antialias_json(const std::optional<Antialiasing>& a) {
+    if (!a) return {{"method", "none"}};
+    Json json = {{"method", a->method}, {"band_pixels", a->band_pixels}};
+    if (a->points.empty()) return json;
+    json["threshold"] = a->threshold;
+    json["points"] = a->points;
+    json["recomputed_pixels"] = a->recomputed;
+    json["recomputed_share"] = a->recomputed_share;
+    return json;
+}
+
 Json measured_json(const RenderReport& report) {
     Json commands = Json::array();
     for (const LabelSummary& c : report.measured.commands) {
@@ -72,13 +89,36 @@ Json to_json(const RenderReport& r) {
                      {"polygon", e[RAYA_POLYGON_TESTS]},
                      {"cone", e[RAYA_CONE_TESTS]}};
     json["shading"] = {{"hits", e[RAYA_SHADED]}, {"lit", e[RAYA_LIT]}, {"highlights", e[RAYA_HIGHLIGHTS]}};
-    json["load"] = load_json(r.load);
+    json["antialias"] = antialias_json(r.antialias);
+    json["load"] = loads_json(r);
     json["communication"] = {{"broadcasts", c.broadcasts}, {"broadcast_words", c.broadcast_words},
                              {"rotations", c.rotations},   {"rotation_words", c.rotation_words},
                              {"gathers", c.gathers},       {"gather_words", c.gather_words}};
     json["measured"] = measured_json(r);
     return json;
 }
+
+namespace {
+
+std::string load_line(const std::string& label, const Load& load) {
+    return fmt::format("{:7} u = {:.3f}, speed-up {:.1f} of {}, efficiency {:.1f} % (modelled cycles)\n", label,
+                       load.imbalance, load.speedup, load.per_pe.size(), 100 * load.efficiency);
+}
+
+std::string antialias_lines(const RenderReport& r) {
+    if (!r.antialias) return {};
+    const Antialiasing& a = *r.antialias;
+    std::string text;
+    if (!a.points.empty())
+        text += fmt::format("super   {} pixels ({:.1f} %) recomputed from 4 more points each, threshold {}\n",
+                            a.recomputed, 100 * a.recomputed_share, a.threshold);
+    if (r.loads.size() > 1)
+        for (const auto& [phase, load] : r.loads) text += load_line("  " + phase.substr(0, 5), load);
+    return text +
+           fmt::format("ring    {} rotations, {} words\n", r.communication.rotations, r.communication.rotation_words);
+}
+
+}  // namespace
 
 std::string human_summary(const RenderReport& r) {
     const EventCounts& e = r.events;
@@ -88,8 +128,7 @@ std::string human_summary(const RenderReport& r) {
                                    r.machine.mapping, r.machine.offset, r.machine.format, r.machine.bounces);
     text += fmt::format("rays    {} = {} primary + {} reflected + {} refracted + {} shadow\n", rays, e[RAYA_PRIMARY],
                         e[RAYA_REFLECTED], e[RAYA_REFRACTED], e[RAYA_SHADOW]);
-    text += fmt::format("load    u = {:.3f}, speed-up {:.1f} of {}, efficiency {:.1f} % (modelled cycles)\n",
-                        r.load.imbalance, r.load.speedup, r.machine.pes, 100 * r.load.efficiency);
+    text += load_line("load", r.load) + antialias_lines(r);
     text += fmt::format(
         "memory  {:.1f} KB in each PE{}\n", static_cast<double>(r.machine.pe_memory_used_bytes) / 1024,
         r.machine.pe_memory_bytes ? fmt::format(" of {} KB", r.machine.pe_memory_bytes / 1024) : ", no limit");

@@ -2,7 +2,9 @@
 #pragma once
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cl/profile.hpp"
@@ -11,6 +13,16 @@
 #include "report/load.hpp"
 
 namespace raya {
+
+/// How the image was smoothed over the ring.
+struct Antialiasing {
+    std::string method;             // "filter" or "supersample"
+    std::string points;             // of supersampling: "axes" or "diagonals"
+    double threshold = 0;           // of supersampling, 0..1
+    std::uint64_t recomputed = 0;   // pixels supersampled
+    double recomputed_share = 0;    // of all pixels
+    std::uint32_t band_pixels = 0;  // pixels of a PE that go round the ring at a time
+};
 
 struct RenderReport {
     std::string scene;
@@ -33,7 +45,9 @@ struct RenderReport {
     } device;
 
     EventCounts events{};
-    Load load;
+    Load load;                                        // of all phases together
+    std::vector<std::pair<std::string, Load>> loads;  // of each phase, by its name
+    std::optional<Antialiasing> antialias;
     Communication communication;
 
     struct {

@@ -11,20 +11,37 @@ namespace {
 
 constexpr std::uint64_t kWaitingRayWords = 7;  // origin, direction, weight
 constexpr std::uint64_t kWalkWords = 32;       // the ray, its hit, normal, mirror direction, tint, sum and counters
+constexpr std::uint64_t kPixelBytes = 12;
+
+void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes, const std::string& remedy) {
+    throw UserError(fmt::format("{}: needs {:.1f} KB in every PE, a PE of {} has {} KB; use {}--machine grande", what,
+                                static_cast<double>(bytes) / 1024, machine.title, *machine.pe_memory_bytes / 1024,
+                                remedy));
+}
 
 }  // namespace
 
-PeMemory plan_pe_memory(const Machine& machine, const std::string& scene, std::uint64_t job_words,
-                        std::uint32_t bounces, std::uint32_t share) {
-    PeMemory memory{job_words, kWalkWords + kWaitingRayWords * bounces, share};
+PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
+    PeMemory memory{.job_words = demand.job_words, .tree_words = kWalkWords + kWaitingRayWords * demand.bounces};
+    const bool exchanges = demand.antialias != AntialiasMethod::kNone;
+    std::uint32_t& varied = exchanges ? memory.band_pixels : memory.block_pixels;
+    if (exchanges) memory.block_pixels = demand.share;
+    if (demand.antialias == AntialiasMethod::kFilter) memory.sum_pixels = demand.share;
+    if (demand.antialias == AntialiasMethod::kSupersample) memory.marks = demand.share;
+    const std::uint64_t fixed = memory.bytes();
+    varied = demand.share;
     if (!machine.pe_memory_bytes || memory.bytes() <= *machine.pe_memory_bytes) return memory;
-    memory.block_pixels = 0;
-    const std::uint64_t limit = *machine.pe_memory_bytes, fixed = memory.bytes();
-    if (fixed + 12 > limit) {
-        throw UserError(fmt::format("{}: needs {:.1f} KB in every PE, a PE of {} has {} KB; use --machine grande",
-                                    scene, static_cast<double>(fixed + 12) / 1024, machine.title, limit / 1024));
+
+    const std::uint64_t limit = *machine.pe_memory_bytes;
+    if (fixed + kPixelBytes > limit && exchanges)
+        refuse(machine, fmt::format("{} with --antialias {}", demand.scene, antialias_name(demand.antialias)),
+               fixed + kPixelBytes, "more PEs, a smaller image or ");
+    if (fixed + kPixelBytes > limit) refuse(machine, demand.scene, fixed + kPixelBytes, "");
+    varied = static_cast<std::uint32_t>(std::min<std::uint64_t>(demand.share, (limit - fixed) / kPixelBytes));
+    if (exchanges) {
+        const std::uint32_t bands = (demand.share + varied - 1) / varied;
+        varied = (demand.share + bands - 1) / bands;
     }
-    memory.block_pixels = static_cast<std::uint32_t>(std::min<std::uint64_t>(share, (limit - fixed) / 12));
     return memory;
 }
 

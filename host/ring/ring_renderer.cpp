@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 
-#include "cl/kernel_source.hpp"
-#include "ring/kernel_options.hpp"
 #include "ring/mapping.hpp"
 
 namespace raya {
 namespace {
+
+// Labels of the passes' commands, and names of the phases.
+constexpr const char* kTrace = "trace";
+constexpr const char* kRetrace = "supersample";
 
 using Clock = std::chrono::steady_clock;
 
@@ -42,68 +44,95 @@ std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, st
     return std::clamp(affordable, std::min(8 * lanes, share), share);
 }
 
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const Scene& scene,
+                             const DeviceInfo& device) {
+    return {.lanes = settings.kernels.lanes,
+            .group_size = settings.kernels.group_size,
+            .bounces = settings.bounces,
+            .format = settings.format,
+            .words_local = 4 * job.words.size() + sizeof(cl_uint) <= device.local_memory_bytes,
+            .filter = settings.kernels.filter && !scene.spheres.empty() &&
+                      sphere_filter_holds(settings.format, scene_extent(scene)),
+            .polygons = job.has_polygons,
+            .patches = job.has_patches,
+            .cones = job.has_cones};
+}
+
+// Calls `move` for each pixel of the PEs' blocks, which start at pixel `block` of each share, with its number in the
+// block layout [PE][capacity] and in the image.
+template <class Move>
+void for_each_pixel(const raya_mapping& m, std::uint32_t block, std::uint32_t capacity, Move&& move) {
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const raya_share share = raya_share_of(m, pe);
+        const std::uint32_t end = std::min(raya_share_size(share), block + capacity);
+        for (std::uint32_t k = block; k < end; ++k) {
+            const raya_pixel at = raya_pixel_of(m, share, k);
+            move(std::size_t{pe} * capacity + (k - block), std::size_t{at.row} * m.width + at.column);
+        }
+    }
+}
+
 }  // namespace
 
 double trace_seconds(const RingResult& result) {
     double ns = 0;
     for (const LabelSummary& command : result.commands)
-        if (command.label == "trace") ns += static_cast<double>(command.total_ns);
+        if (command.label == kTrace || command.label == kRetrace) ns += static_cast<double>(command.total_ns);
     return ns > 0 ? ns * 1e-9 : result.render_s;
 }
 
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
       settings_(checked(settings, session.device())),
-      filter_(settings.kernels.filter && !scene.spheres.empty() &&
-              sphere_filter_holds(settings.format, scene_extent(scene))),
-      job_(pack_job(scene, job_settings(settings))),
-      share_(largest_share(settings.mapping)),
-      memory_(plan_pe_memory(settings.machine, scene.name, job_.words.size(), settings.bounces, share_)),
-      slice_(slice_pixels(settings, scene.object_count(), settings_.kernels.lanes * settings_.kernels.group_size,
-                          memory_.block_pixels)),
-      words_local_(4 * job_.words.size() + sizeof(cl_uint) <= session.device().local_memory_bytes),
+      job_(pack_job(scene, job_settings(settings_))),
+      share_(largest_share(settings_.mapping)),
+      memory_(plan_pe_memory(settings_.machine, {.scene = scene.name,
+                                                 .job_words = job_.words.size(),
+                                                 .bounces = settings_.bounces,
+                                                 .share = share_,
+                                                 .antialias = settings_.antialias.method})),
       bus_(session, communication_),
       broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.words.size())),
-      pixels_(session.buffer<float>("pixel blocks", 3ull * settings.mapping.pes * memory_.block_pixels)),
-      cycles_(session.buffer<std::uint64_t>("pixel cycles", 1ull * settings.mapping.pes * memory_.block_pixels)),
-      events_(session.buffer<std::uint64_t>("events",
-                                            1ull * settings.mapping.pes * settings_.kernels.group_size * RAYA_EVENTS)) {
-    build();
+      pixels_(session.buffer<float>("pixel blocks", 3ull * settings_.mapping.pes * memory_.block_pixels)),
+      marks_(session.buffer<std::uint8_t>("no marks", 1)) {
+    build(scene);
 }
 
-void RingRenderer::build() {
-    const KernelOptions options{.lanes = settings_.kernels.lanes,
-                                .group_size = settings_.kernels.group_size,
-                                .bounces = settings_.bounces,
-                                .format = settings_.format,
-                                .words_local = words_local_,
-                                .filter = filter_,
-                                .polygons = job_.has_polygons,
-                                .patches = job_.has_patches,
-                                .cones = job_.has_cones};
-    std::vector<std::string> all = build_options(options, session_.device());
-    all.insert(all.end(), settings_.kernels.more_options.begin(), settings_.kernels.more_options.end());
+void RingRenderer::build(const Scene& scene) {
     const Clock::time_point start = Clock::now();
-    const Program program =
-        session_.build("ring/trace.cl", kernel_source("ring/trace.cl", settings_.kernels.kernel_dir), all);
-    trace_ = std::make_unique<TraceKernel>(
-        program.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
-                       LocalMemory<std::uint32_t>, Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>(
-            "trace"));
-    build_options_ = program.options();
-    // PoCL compiles a kernel's body at its first launch: launch it once for no pixels, so that this counts as building.
-    session_.write("clear counters", events_, std::vector<std::uint64_t>(events_.size()));
+    const KernelOptions options = kernel_options(settings_, job_, scene, session_.device());
+    const KernelChoice& choice = settings_.kernels;
+    tracer_ = std::make_unique<Tracer>(
+        session_, options, choice.more_options, choice.kernel_dir, settings_.mapping.pes, memory_.block_pixels,
+        slice_pixels(settings_, scene.object_count(), options.lanes * options.group_size, memory_.block_pixels));
+    counters_.push_back(tracer_->make_counters(kTrace));
     bus_.broadcast(broadcast_, job_.words);
-    launch_trace("warm-up", 0, 0, 0);
+    tracer_->clear(counters_.front());
+    tracer_->warm_up(broadcast_, marks_, pixels_, counters_.front());
+    if (settings_.antialias.method != AntialiasMethod::kNone) build_exchange(options);
     session_.finish();
     build_s_ = seconds_since(start);
 }
 
-void RingRenderer::launch_trace(const std::string& label, std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
-    const LocalMemory<std::uint32_t> memory{words_local_ ? job_.words.size() : 1};
-    session_.launch(label, *trace_, settings_.mapping.pes, settings_.kernels.group_size, broadcast_,
-                    static_cast<cl_uint>(job_.words.size()), block, memory_.block_pixels, begin, end, memory, pixels_,
-                    cycles_, events_);
+void RingRenderer::build_exchange(KernelOptions options) {
+    options.lanes = 1;
+    std::vector<std::string> all = build_options(options, session_.device());
+    all.insert(all.end(), settings_.kernels.more_options.begin(), settings_.kernels.more_options.end());
+    const ExchangeSetup setup{.session = session_,
+                              .broadcast = broadcast_,
+                              .pes = settings_.mapping.pes,
+                              .capacity = memory_.block_pixels,
+                              .group_size = options.group_size,
+                              .build_options = all,
+                              .kernel_dir = settings_.kernels.kernel_dir};
+    exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
+                                                    memory_.band_pixels);
+    if (settings_.antialias.method == AntialiasMethod::kFilter) {
+        filter_ = std::make_unique<RingFilter>(setup);
+        return;
+    }
+    contrast_ = std::make_unique<RingContrast>(setup, round_to_format(settings_.antialias.threshold, settings_.format));
+    counters_.push_back(tracer_->make_counters(kRetrace));
 }
 
 RingResult RingRenderer::render(const ProgressCallback& progress) {
@@ -115,8 +144,12 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     bus_.broadcast(broadcast_, job_.words);
     for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) {
         trace(block, progress);
+        if (filter_) filter_->apply(pixels_, *exchange_);
+        if (contrast_) supersample(progress);
         gather(block, result);
+        collect_costs(block, result);
     }
+    if (contrast_) collect_marks(result);
     collect_events(result);
     result.render_s = seconds_since(start);
     describe(result);
@@ -124,68 +157,96 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
 }
 
 void RingRenderer::prepare(RingResult& result) {
-    const raya_mapping& m = settings_.mapping;
-    const std::size_t pixels = std::size_t{m.width} * m.height;
-    result.image = {static_cast<int>(m.width), static_cast<int>(m.height), std::vector<float>(3 * pixels)};
-    result.cost = {static_cast<int>(m.width), static_cast<int>(m.height), std::vector<float>(pixels)};
-    session_.write("clear counters", events_, std::vector<std::uint64_t>(events_.size()));
+    const auto width = static_cast<int>(settings_.mapping.width), height = static_cast<int>(settings_.mapping.height);
+    const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
+    result.image = {width, height, std::vector<float>(3 * pixels)};
+    result.all.cost = {width, height, std::vector<float>(pixels)};
+    if (contrast_) result.mask = result.image;
+    for (PassCounters& counters : counters_) {
+        Phase phase;
+        phase.name = result.phases.empty() ? kTrace : kRetrace;
+        phase.cost = result.all.cost;
+        result.phases.push_back(std::move(phase));
+        tracer_->clear(counters);
+    }
 }
 
 void RingRenderer::trace(std::uint32_t block, const ProgressCallback& progress) {
-    const std::uint32_t end = std::min(share_, block + memory_.block_pixels);
-    for (std::uint32_t begin = block; begin < end; begin += slice_) {
-        const std::uint32_t until = std::min(end, begin + slice_);
-        launch_trace("trace", block, begin, until);
-        if (!progress) continue;
-        session_.finish();
-        progress(static_cast<double>(until) / share_);
-    }
+    const double passes = static_cast<double>(counters_.size());
+    const PixelRange range{block, block, std::min(share_, block + memory_.block_pixels)};
+    const auto report = [&](double done) { progress((block + done * (range.end - block)) / share_ / passes); };
+    tracer_->trace(kTrace, broadcast_, range, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
+                   progress ? report : ProgressCallback{});
+}
+
+void RingRenderer::supersample(const ProgressCallback& progress) {
+    contrast_->apply(pixels_, *exchange_);
+    const auto report = [&](double done) { progress((1 + done) / 2); };
+    tracer_->trace(kRetrace, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(), pixels_,
+                   counters_[1], progress ? report : ProgressCallback{});
 }
 
 void RingRenderer::gather(std::uint32_t block, RingResult& result) {
     const raya_mapping& m = settings_.mapping;
-    const std::size_t capacity = memory_.block_pixels;
-    std::vector<float> pixels(3 * capacity * m.pes);
-    std::vector<std::uint64_t> cycles(capacity * m.pes);
+    std::vector<float> pixels(pixels_.size());
     std::uint64_t owned = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
-        owned += share > block ? std::min<std::uint64_t>(share - block, capacity) : 0;
+        owned += share > block ? std::min(share - block, memory_.block_pixels) : 0;
     }
     bus_.gather(pixels_, pixels, 3 * owned);
-    session_.read("read cost", cycles_, cycles);
-    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
-        const raya_share share = raya_share_of(m, pe);
-        const std::uint32_t end = std::min(raya_share_size(share), block + memory_.block_pixels);
-        for (std::uint32_t k = block; k < end; ++k) {
-            const raya_pixel at = raya_pixel_of(m, share, k);
-            const std::size_t to = std::size_t{at.row} * m.width + at.column, from = pe * capacity + (k - block);
-            std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
-                        result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
-            result.cost.values[to] = static_cast<float>(cycles[from]);
-        }
+    for_each_pixel(m, block, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
+        std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
+                    result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
+    });
+}
+
+// What the kernels counted is read by the host to be reported: no transfer of the machine.
+void RingRenderer::collect_costs(std::uint32_t block, RingResult& result) {
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
+        session_.read("read cost", counters_[i].cycles, cycles);
+        for_each_pixel(settings_.mapping, block, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
+            result.phases[i].cost.values[to] = static_cast<float>(cycles[from]);
+            result.all.cost.values[to] += static_cast<float>(cycles[from]);
+        });
     }
+}
+
+void RingRenderer::collect_marks(RingResult& result) {
+    std::vector<std::uint8_t> marks(contrast_->marks().size());
+    session_.read("read marks", contrast_->marks(), marks);
+    for_each_pixel(settings_.mapping, 0, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
+        result.recomputed += marks[from];
+        std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3, static_cast<float>(marks[from]));
+    });
 }
 
 void RingRenderer::collect_events(RingResult& result) {
-    std::vector<std::uint64_t> counted(events_.size());
-    session_.read("read counters", events_, counted);
     const auto cycles = cycles_of_events();
-    std::vector<std::uint64_t> loads(settings_.mapping.pes);
-    for (std::size_t i = 0; i < counted.size(); ++i) {
-        const std::size_t event = i % RAYA_EVENTS;
-        result.events[event] += counted[i];
-        loads[i / RAYA_EVENTS / settings_.kernels.group_size] += cycles[event] * counted[i];
+    std::vector<std::uint64_t> all(settings_.mapping.pes);
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        std::vector<std::uint64_t> counted(counters_[i].events.size()), loads(all.size());
+        session_.read("read counters", counters_[i].events, counted);
+        for (std::size_t n = 0; n < counted.size(); ++n) {
+            const std::size_t event = n % RAYA_EVENTS, pe = n / RAYA_EVENTS / settings_.kernels.group_size;
+            result.phases[i].events[event] += counted[n];
+            result.all.events[event] += counted[n];
+            loads[pe] += cycles[event] * counted[n];
+            all[pe] += cycles[event] * counted[n];
+        }
+        result.phases[i].load = load_of(std::move(loads));
     }
-    result.load = load_of(std::move(loads));
+    result.all.load = load_of(std::move(all));
 }
 
 void RingRenderer::describe(RingResult& result) {
+    result.all.name = "all";
     result.communication = communication_;
     result.pe_memory = memory_;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
-    result.build_options = build_options_;
+    result.build_options = tracer_->build_options();
     result.build_s = build_s_;
     result.commands = session_.profile().summary();
 }

@@ -1,19 +1,21 @@
-// The ring machine: a scene in, an image and everything that was counted on the way out.
+// Renders a scene on a model of a ring machine: the host drives PEs, bus and ring; the kernels are the PEs.
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
 #include "image/image.hpp"
 #include "machine/machine.hpp"
-#include "report/communication.hpp"
 #include "report/load.hpp"
+#include "ring/antialias.hpp"
 #include "ring/bus.hpp"
+#include "ring/contrast.hpp"
+#include "ring/filter.hpp"
+#include "ring/neighbour_exchange.hpp"
 #include "ring/pe_memory.hpp"
+#include "ring/tracer.hpp"
 #include "scene/packer.hpp"
 #include "scene/scene.hpp"
 
@@ -34,16 +36,26 @@ struct RingSettings {
     std::uint32_t bounces = 8;
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
+    Antialias antialias;
     KernelChoice kernels;
     std::uint32_t pixels_per_launch =
         0;  // of each PE; 0: as many as take about a second, so that progress can be shown
 };
 
+/// What was counted in one phase of a render.
+struct Phase {
+    std::string name;  // "trace", "supersample"
+    EventCounts events{};
+    Load load;       // modelled cycles of each PE, from its own counters
+    GreyImage cost;  // modelled cycles of each pixel
+};
+
 struct RingResult {
     Image image;
-    GreyImage cost;  // modelled cycles of each pixel
-    EventCounts events{};
-    Load load;  // modelled cycles of each PE, from its own counters
+    std::vector<Phase> phases;     // the first pass, and supersampling where it was asked for
+    Phase all;                     // their sums
+    Image mask;                    // 1 where a pixel was supersampled, else 0; empty without supersampling
+    std::uint64_t recomputed = 0;  // pixels supersampled
     Communication communication;
     PeMemory pe_memory;
     std::uint32_t lanes = 0, group_size = 0;
@@ -52,12 +64,8 @@ struct RingResult {
     std::vector<LabelSummary> commands;
 };
 
-/// Seconds that the kernels of one image took on the device; by the host's clock where the device does not time its
-/// commands.
+/// Seconds that tracing one image took on the device; by the host's clock where the device does not time its commands.
 double trace_seconds(const RingResult& result);
-
-/// Called now and then with the share of the pixels that are done, 0..1.
-using ProgressCallback = std::function<void(double)>;
 
 class RingRenderer {
   public:
@@ -69,35 +77,33 @@ class RingRenderer {
     RingResult render(const ProgressCallback& progress = {});
 
   private:
-    using TraceKernel =
-        Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, LocalMemory<std::uint32_t>,
-               Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
-
-    void build();
-    void launch_trace(const std::string& label, std::uint32_t block, std::uint32_t begin, std::uint32_t end);
+    void build(const Scene& scene);
+    void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
     void trace(std::uint32_t block, const ProgressCallback& progress);
+    void supersample(const ProgressCallback& progress);
     void gather(std::uint32_t block, RingResult& result);
+    void collect_costs(std::uint32_t block, RingResult& result);
+    void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
     void describe(RingResult& result);
 
     Session& session_;
     RingSettings settings_;  // lanes and group size chosen
-    bool filter_ = false;    // see sphere_filter_holds
     PackedJob job_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;
-    std::uint32_t slice_ = 0;  // pixels of each share that one launch traces
-    bool words_local_ = true;
-    std::string build_options_;
-    double build_s_ = 0;
     Communication communication_;
     Bus bus_;
+    double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;
-    Buffer<float> pixels_;          // [PE][block_pixels][3]
-    Buffer<std::uint64_t> cycles_;  // [PE][block_pixels]
-    Buffer<std::uint64_t> events_;  // [PE][L][RAYA_EVENTS]
-    std::unique_ptr<TraceKernel> trace_;
+    Buffer<float> pixels_;        // [PE][block_pixels][3]
+    Buffer<std::uint8_t> marks_;  // what the first pass is given in place of marks
+    std::unique_ptr<Tracer> tracer_;
+    std::vector<PassCounters> counters_;  // of each phase
+    std::unique_ptr<NeighbourExchange> exchange_;
+    std::unique_ptr<RingFilter> filter_;
+    std::unique_ptr<RingContrast> contrast_;
 };
 
 }  // namespace raya

@@ -100,4 +100,10 @@ RAYA_SHARED_FUNCTION raya_pixel raya_pixel_of(raya_mapping m, raya_share s, raya
     return pixel;
 }
 
+// The number of a pixel in the share of its owner; the inverse of raya_pixel_of.
+RAYA_SHARED_FUNCTION raya_u32 raya_index_of(raya_mapping m, raya_share s, raya_pixel pixel) {
+    const raya_u32 slot = raya_slot_of(m, pixel.row, pixel.column);
+    return (pixel.row - s.first_row) / s.row_step * s.slots + (slot - s.first_slot) / s.slot_step;
+}
+
 #endif

@@ -9,6 +9,7 @@
 
 #include "cl/commands.hpp"
 #include "error.hpp"
+#include "scene/split_mix.hpp"
 
 using namespace raya;
 using Catch::Contains;
@@ -51,6 +52,57 @@ TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
         }
     }
     CHECK(contents(session, from) == before);
+}
+
+TEST_CASE("copies of blocks move their elements and touch no others", "[cl]") {
+    constexpr std::uint64_t kSeed = 1;
+    SplitMix random(kSeed);
+    const auto below = [&](std::size_t end) { return std::size_t(random.next() % end); };
+    Session session(choose_device(""));
+    for (int i = 0; i < 300; ++i) {
+        const std::size_t blocks = 1 + below(20), count = 1 + below(30);
+        const Session::Blocks from_at = {below(5), 0}, to_at = {below(5), 0};
+        const std::size_t from_pitch = from_at.offset + count + below(5), to_pitch = to_at.offset + count + below(5);
+        CAPTURE(kSeed, i, blocks, count, from_at.offset, from_pitch, to_at.offset, to_pitch);
+        const std::vector<cl_uint> moved = counting(from_pitch * blocks + below(3), 1000);
+        std::vector<cl_uint> expected = counting(to_pitch * blocks + below(3), 500'000);
+        Buffer<cl_uint> from = session.buffer<cl_uint>("from", moved.size());
+        Buffer<cl_uint> to = session.buffer<cl_uint>("to", expected.size());
+        session.write("load", from, moved);
+        session.write("load", to, expected);
+        session.clear_profile();
+        session.copy_blocks("blocks", from, {from_at.offset, from_pitch}, to, {to_at.offset, to_pitch}, count, blocks);
+        REQUIRE(session.profile().commands().size() == 1);
+        CHECK(session.profile().commands()[0].kind == "copy");
+        CHECK(session.profile().commands()[0].bytes == count * blocks * sizeof(cl_uint));
+        for (std::size_t block = 0; block < blocks; ++block)
+            for (std::size_t n = 0; n < count; ++n)
+                expected[block * to_pitch + to_at.offset + n] = moved[block * from_pitch + from_at.offset + n];
+        CHECK(contents(session, to) == expected);
+        CHECK(contents(session, from) == moved);
+    }
+}
+
+TEST_CASE("copies of blocks beyond a block or a buffer are refused and nothing is done", "[cl]") {
+    Session session(choose_device(""));
+    Buffer<cl_uint> a = session.buffer<cl_uint>("a", 12), b = session.buffer<cl_uint>("b", 20);
+    const auto copy = [&](Session::Blocks from, Session::Blocks to, std::size_t count, std::size_t blocks) {
+        session.copy_blocks("c", a, from, b, to, count, blocks);
+    };
+    CHECK_THROWS_AS(copy({1, 4}, {0, 5}, 4, 3), std::out_of_range);  // the source's next block
+    CHECK_THROWS_AS(copy({0, 4}, {2, 5}, 4, 3), std::out_of_range);  // the target's
+    CHECK_THROWS_AS(copy({5, 4}, {0, 5}, 0, 3), std::out_of_range);
+    CHECK_THROWS_AS(copy({0, 4}, {0, 5}, 4, 4), std::out_of_range);  // more blocks than the source has
+    CHECK_THROWS_AS(copy({0, 2}, {0, 5}, 2, 5), std::out_of_range);  // than the target has
+    CHECK_THROWS_AS(copy({0, 4}, {kMost, 5}, 4, 3), std::out_of_range);
+    CHECK_THROWS_AS(copy({2, 4}, {0, 5}, kMost, 3), std::out_of_range);
+    CHECK_THROWS_WITH(session.copy_blocks("band", a, {1, 4}, b, {0, 5}, 4, 3), Contains("'band'") && Contains("'a'"));
+    CHECK_THROWS_WITH(session.copy_blocks("band", a, {0, 4}, b, {2, 5}, 4, 3), Contains("'band'") && Contains("'b'"));
+    // pitch x blocks beyond 2^64
+    CHECK_THROWS_AS(session.copy_blocks("band", a, {0, std::size_t{1} << 63}, b, {0, 5}, 1, 2), std::out_of_range);
+    copy({4, 4}, {0, 5}, 0, 3);  // of no elements
+    copy({0, 4}, {0, 5}, 4, 0);  // of no blocks
+    CHECK(session.profile().commands().empty());
 }
 
 TEST_CASE("write and read with an offset touch only their range", "[cl]") {

@@ -20,6 +20,7 @@ struct RingCase {
     std::string format = "fp32";
     bool filter = true;
     std::vector<std::string> more_options{};
+    Antialias antialias{};
 };
 
 inline RingSettings settings_of(const RingCase& c) {
@@ -28,6 +29,7 @@ inline RingSettings settings_of(const RingCase& c) {
     settings.mapping = make_mapping("cyclic", c.width, c.height, c.pes, c.offset, c.fold);
     settings.bounces = c.bounces;
     settings.sampling = c.sampling;
+    settings.antialias = c.antialias;
     settings.format = parse_format(c.format);
     settings.kernels.filter = c.filter;
     settings.kernels.lanes = c.lanes;

@@ -30,12 +30,12 @@ TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
         const auto near = [](std::uint64_t got, std::uint64_t wanted) {
             return std::abs(double(got) - double(wanted)) <= 0.002 * double(wanted) + 2;
         };
-        CHECK(result.events[RAYA_PRIMARY] == expected.counts.primary);
-        CHECK(near(result.events[RAYA_PRIMARY_HITS], expected.counts.primary_hits));
-        CHECK(near(result.events[RAYA_REFLECTED], expected.counts.reflected));
-        CHECK(near(result.events[RAYA_REFRACTED], expected.counts.refracted));
-        CHECK(near(result.events[RAYA_SHADOW], expected.counts.shadow));
-        CHECK(near(result.events[RAYA_SHADOW_HITS], expected.counts.shadow_hits));
+        CHECK(result.all.events[RAYA_PRIMARY] == expected.counts.primary);
+        CHECK(near(result.all.events[RAYA_PRIMARY_HITS], expected.counts.primary_hits));
+        CHECK(near(result.all.events[RAYA_REFLECTED], expected.counts.reflected));
+        CHECK(near(result.all.events[RAYA_REFRACTED], expected.counts.refracted));
+        CHECK(near(result.all.events[RAYA_SHADOW], expected.counts.shadow));
+        CHECK(near(result.all.events[RAYA_SHADOW_HITS], expected.counts.shadow_hits));
     }
 }
 

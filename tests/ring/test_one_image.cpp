@@ -32,7 +32,7 @@ struct Answer {
     bool operator==(const Answer&) const = default;
 };
 
-Answer answer_of(const RingResult& result) { return {pixel_hash(result.image), result.events}; }
+Answer answer_of(const RingResult& result) { return {pixel_hash(result.image), result.all.events}; }
 
 }  // namespace
 
@@ -129,7 +129,7 @@ TEST_CASE("a second render of the same renderer gives the same answer", "[ring]"
     const RingResult first = renderer.render(), second = renderer.render();
     CHECK(answer_of(first) == answer_of(second));
     CHECK(second.communication.broadcasts == 1);
-    CHECK(first.load.per_pe == second.load.per_pe);
+    CHECK(first.all.load.per_pe == second.all.load.per_pe);
 }
 
 }  // namespace raya

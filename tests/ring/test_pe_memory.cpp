@@ -1,9 +1,11 @@
 // What fits into a PE.
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <string>
 
 #include "error.hpp"
 #include "ring/pe_memory.hpp"
+#include "scene/split_mix.hpp"
 
 using namespace raya;
 using Catch::Contains;
@@ -12,56 +14,142 @@ namespace {
 
 /// Bytes beside words of the job and pixels: the walk through a ray tree, which grows by a waiting ray a bounce.
 std::uint64_t walk_bytes(std::uint32_t bounces) {
-    return plan_pe_memory(machine_named("grande"), "s", 0, bounces, 0).bytes();
+    return plan_pe_memory(machine_named("grande"), {.scene = "s", .bounces = bounces}).bytes();
 }
 
-Machine machine_of(std::uint32_t bytes) {
+Machine machine_of(std::uint64_t bytes) {
     Machine machine = machine_named("spa");
-    machine.pe_memory_bytes = bytes;
+    machine.pe_memory_bytes = static_cast<std::uint32_t>(bytes);
     return machine;
+}
+
+PeDemand demand(std::uint64_t job_words, std::uint32_t share, AntialiasMethod method = AntialiasMethod::kNone) {
+    return {.scene = "s", .job_words = job_words, .bounces = 8, .share = share, .antialias = method};
+}
+
+/// Bytes of a PE that exchanges pixels, without those on their way round the ring: three words a pixel, as many sums
+/// or a mark.
+std::uint64_t bytes_at_rest(const PeDemand& d) {
+    const std::uint64_t a_pixel = d.antialias == AntialiasMethod::kFilter ? 24 : 13;
+    return 4 * d.job_words + walk_bytes(d.bounces) + a_pixel * d.share;
+}
+
+/// The longest band when the share is cut into as few equal parts as fit, each count tried in turn; 0 if none fits.
+std::uint32_t fewest_parts(std::uint32_t share, std::uint64_t room) {
+    for (std::uint32_t parts = 1; parts <= share; ++parts) {
+        const std::uint32_t longest = share / parts + (share % parts != 0);
+        if (12ull * longest <= room) return longest;
+    }
+    return 0;
 }
 
 }  // namespace
 
 TEST_CASE("memory is words of the job, the walk and three words a pixel, 4 bytes each", "[ring]") {
-    const PeMemory memory = plan_pe_memory(machine_named("spa"), "s", 1000, 8, 256);
+    const PeMemory memory = plan_pe_memory(machine_named("spa"), demand(1000, 256));
     CHECK(memory.job_words == 1000);
     CHECK(memory.block_pixels == 256);
+    CHECK((memory.sum_pixels == 0 && memory.band_pixels == 0 && memory.marks == 0));
     CHECK(memory.bytes() == 4 * 1000 + walk_bytes(8) + 12 * 256);
     CHECK(walk_bytes(8) - walk_bytes(7) == 4 * 7);  // origin, direction, weight
     CHECK(walk_bytes(0) > 0);
 }
 
+TEST_CASE("anti-aliasing is charged its sums or marks, and the pixels on their way", "[ring]") {
+    const PeMemory filter = plan_pe_memory(machine_named("spa"), demand(1000, 256, AntialiasMethod::kFilter));
+    CHECK((filter.block_pixels == 256 && filter.sum_pixels == 256 && filter.band_pixels == 256 && filter.marks == 0));
+    CHECK(filter.bytes() == 4 * 1000 + walk_bytes(8) + (12 + 12 + 12) * 256);
+    const PeMemory sampled = plan_pe_memory(machine_named("spa"), demand(1000, 255, AntialiasMethod::kSupersample));
+    CHECK((sampled.block_pixels == 255 && sampled.sum_pixels == 0 && sampled.band_pixels == 255));
+    CHECK(sampled.marks == 255);
+    CHECK(sampled.bytes() == 4 * 1000 + walk_bytes(8) + (12 + 12 + 1) * 255);
+}
+
 TEST_CASE("a machine without a limit holds everything", "[ring]") {
-    const PeMemory memory = plan_pe_memory(machine_named("grande"), "s", 100'000'000, 8, 1'000'000);
+    const PeMemory memory = plan_pe_memory(machine_named("grande"), demand(100'000'000, 1'000'000));
     CHECK(memory.block_pixels == 1'000'000);
     CHECK(memory.bytes() > 400'000'000);
+    constexpr std::uint32_t kLargest = 1u << 28;  // one PE for the largest image
+    const PeMemory filter = plan_pe_memory(machine_named("grande"), demand(0, kLargest, AntialiasMethod::kFilter));
+    CHECK(filter.band_pixels == kLargest);
+    CHECK(filter.bytes() == walk_bytes(8) + (36ull << 28));
 }
 
 TEST_CASE("a share that does not fit is cut into the largest blocks that do", "[ring]") {
-    const auto walk = static_cast<std::uint32_t>(walk_bytes(8));
     const std::uint64_t words = 500;
     for (const std::uint32_t pixels : {1u, 2u, 99u}) {
-        const std::uint32_t exact = 4 * 500 + walk + 12 * pixels;
+        const std::uint64_t exact = 4 * words + walk_bytes(8) + 12 * pixels;
+        const auto block = [&](std::uint64_t bytes, std::uint32_t share) {
+            return plan_pe_memory(machine_of(bytes), demand(words, share)).block_pixels;
+        };
         CAPTURE(pixels);
-        CHECK(plan_pe_memory(machine_of(exact), "s", words, 8, pixels).block_pixels == pixels);  // to the last byte
-        CHECK(plan_pe_memory(machine_of(exact), "s", words, 8, pixels + 1).block_pixels == pixels);
-        CHECK(plan_pe_memory(machine_of(exact + 11), "s", words, 8, 1000).block_pixels == pixels);
-        CHECK(plan_pe_memory(machine_of(exact + 12), "s", words, 8, 1000).block_pixels == pixels + 1);
+        CHECK(block(exact, pixels) == pixels);  // to the last byte
+        CHECK(block(exact, pixels + 1) == pixels);
+        CHECK(block(exact + 11, 1000) == pixels);
+        CHECK(block(exact + 12, 1000) == pixels + 1);
     }
     // The paper's run on one PE: 256 x 256 pixels.
-    const PeMemory one = plan_pe_memory(machine_named("spa"), "s", 300, 8, 65'536);
+    const PeMemory one = plan_pe_memory(machine_named("spa"), demand(300, 65'536));
     CHECK(one.block_pixels > 1000);
     CHECK(one.bytes() <= 32 * 1024);
     CHECK(one.bytes() + 12 > 32 * 1024);
 }
 
+TEST_CASE("what goes round is the whole share, or the fewest equal parts of it that fit", "[ring]") {
+    constexpr std::uint64_t kSeed = 4;
+    SplitMix random(kSeed);
+    int cut = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const auto method = random.next() % 2 ? AntialiasMethod::kFilter : AntialiasMethod::kSupersample;
+        const PeDemand d = demand(random.next() % 300, 1 + static_cast<std::uint32_t>(random.next() % 300), method);
+        const std::uint64_t room = 12 + random.next() % (13 * d.share);
+        CAPTURE(kSeed, i, d.job_words, d.share, room, antialias_name(method));
+        const PeMemory memory = plan_pe_memory(machine_of(bytes_at_rest(d) + room), d);
+        CHECK(memory.block_pixels == d.share);  // all are in the PE at once: neighbours may be asked for any
+        CHECK(memory.sum_pixels == (method == AntialiasMethod::kFilter ? d.share : 0));
+        CHECK(memory.marks == (method == AntialiasMethod::kSupersample ? d.share : 0));
+        CHECK(memory.band_pixels == fewest_parts(d.share, room));
+        CHECK(memory.bytes() == bytes_at_rest(d) + 12ull * memory.band_pixels);
+        CHECK(memory.bytes() <= bytes_at_rest(d) + room);
+        cut += memory.band_pixels < d.share;
+    }
+    CHECK(cut > 500);
+    const auto band = [](std::uint64_t pixels) {
+        const PeDemand d = demand(100, 100, AntialiasMethod::kFilter);
+        return plan_pe_memory(machine_of(bytes_at_rest(d) + 12 * pixels), d).band_pixels;
+    };
+    CHECK((band(100) == 100 && band(99) == 50 && band(50) == 50 && band(49) == 34 && band(1) == 1));
+}
+
 TEST_CASE("a scene that leaves no room for a pixel is refused with both figures and the remedy", "[ring]") {
+    const auto plan = [](std::uint64_t words) {
+        return plan_pe_memory(machine_named("spa"),
+                              {.scene = "big.nff", .job_words = words, .bounces = 8, .share = 256});
+    };
     const std::uint64_t words = (32 * 1024 - walk_bytes(8) - 12) / 4;  // the most that fit
-    CHECK(plan_pe_memory(machine_named("spa"), "big.nff", words, 8, 256).block_pixels == 1);
-    CHECK_THROWS_AS(plan_pe_memory(machine_named("spa"), "big.nff", words + 1, 8, 256), UserError);
+    CHECK(plan(words).block_pixels == 1);
+    CHECK_THROWS_AS(plan(words + 1), UserError);
     const std::uint64_t hundred_kb = (100 * 1024 - walk_bytes(8) - 12) / 4;
-    CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), "big.nff", hundred_kb, 8, 256),
-                      Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") && Contains("the SPA") &&
-                          Contains("--machine grande"));
+    CHECK_THROWS_WITH(plan(hundred_kb), Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") &&
+                                            Contains("the SPA") && Contains("--machine grande") &&
+                                            !Contains("more PEs"));  // every PE holds the whole scene
+}
+
+TEST_CASE("a share that leaves no room for a pixel on its way is refused with both figures and the remedy", "[ring]") {
+    for (const auto method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
+        const std::string name = antialias_name(method);
+        CAPTURE(name);
+        PeDemand d = demand(700, 333, method);
+        const std::uint64_t least = bytes_at_rest(d) + 12;
+        CHECK(plan_pe_memory(machine_of(least), d).band_pixels == 1);
+        CHECK_THROWS_AS(plan_pe_memory(machine_of(least - 1), d), UserError);
+        CHECK_NOTHROW(plan_pe_memory(machine_of(least - 1), demand(700, 333)));
+        d.scene = "wide.nff";
+        d.share = 1;
+        d.job_words = (50 * 1024 - bytes_at_rest(demand(0, 1, method)) - 12) / 4;  // 50 KB but for a byte or three
+        CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d),
+                          Contains("wide.nff with --antialias " + name) && Contains("50.0 KB") && Contains("32 KB") &&
+                              Contains("the SPA") && Contains("more PEs") && Contains("smaller image") &&
+                              Contains("--machine grande"));
+    }
 }

@@ -1,0 +1,29 @@
+// How the image is smoothed after the first pass (Kohata & Ito 1993, anti-aliasing).
+#pragma once
+#include <string>
+
+#include "shared/neighbours.h"
+
+namespace raya {
+
+enum class AntialiasMethod {
+    kNone,
+    kFilter,      // every pixel becomes the mean of its 3 x 3 neighbourhood
+    kSupersample  // pixels that differ from a neighbour become the mean of five points
+};
+
+struct Antialias {
+    AntialiasMethod method = AntialiasMethod::kNone;
+    double threshold = 0.125;            // of the difference in a colour, 0..1; supersampling
+    raya_u32 points = RAYA_POINTS_AXES;  // RAYA_POINTS_AXES or _DIAGONALS; supersampling
+};
+
+/// "none", "filter", "supersample"; UserError names the legal values.
+AntialiasMethod parse_antialias(const std::string& text);
+std::string antialias_name(AntialiasMethod method);
+
+/// "axes", "diagonals" as RAYA_POINTS_*; UserError names the legal values.
+raya_u32 parse_points(const std::string& text);
+std::string points_name(raya_u32 points);
+
+}  // namespace raya

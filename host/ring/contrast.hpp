@@ -1,0 +1,32 @@
+// Marks the pixels that differ from a neighbour, over the ring (kernels/ring/contrast.cl).
+#pragma once
+#include "ring/exchange_setup.hpp"
+#include "ring/neighbour_exchange.hpp"
+
+namespace raya {
+
+class RingContrast {
+  public:
+    /// Builds the kernel, launches it once for nothing (PoCL compiles at the first launch) and takes the device memory.
+    /// `threshold` is a number of the format, 0..1.
+    RingContrast(const ExchangeSetup& setup, float threshold);
+
+    /// Marks the pixels of `pixels`, [PE][capacity][3].
+    void apply(const Buffer<float>& pixels, NeighbourExchange& exchange);
+
+    /// [PE][capacity]: 1 where a pixel is marked, else 0.
+    const Buffer<std::uint8_t>& marks() const { return marks_; }
+
+  private:
+    void mark_contrasts(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
+                        std::uint32_t capacity, const Buffer<float>& pixels);
+
+    ExchangeSetup setup_;
+    float threshold_;
+    Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_float, const Buffer<float>&,
+           const Buffer<float>&, Buffer<std::uint8_t>&>
+        mark_contrasts_;
+    Buffer<std::uint8_t> marks_;
+};
+
+}  // namespace raya

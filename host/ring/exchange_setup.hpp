@@ -1,0 +1,22 @@
+// What the kernels of the neighbour exchange are built and launched with.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+
+namespace raya {
+
+struct ExchangeSetup {
+    Session& session;
+    Buffer<std::uint32_t> broadcast;  // the job's words
+    std::uint32_t pes = 0;
+    std::uint32_t capacity = 0;  // pixels in the memory of each PE
+    std::uint32_t group_size = 1;
+    std::vector<std::string> build_options;  // with one lane
+    std::filesystem::path kernel_dir;
+};
+
+}  // namespace raya

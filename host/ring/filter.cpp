@@ -1,0 +1,46 @@
+#include "ring/filter.hpp"
+
+#include <utility>
+
+#include "cl/kernel_source.hpp"
+
+namespace raya {
+
+RingFilter::RingFilter(const ExchangeSetup& setup)
+    : setup_(setup),
+      program_(setup.session.build("ring/filter.cl", kernel_source("ring/filter.cl", setup.kernel_dir),
+                                   setup.build_options)),
+      add_neighbours_(program_.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
+                                      const Buffer<float>&, Buffer<float>&>("add_neighbours")),
+      take_means_(program_.kernel<const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("take_means")),
+      sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes * setup.capacity)) {
+    Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
+    add_neighbours("warm-up", RAYA_LEFT, {none, 0, 0}, 0, 0);
+    setup.session.launch("warm-up", take_means_, setup.pes, setup.group_size, setup.broadcast, 0u, sums_);
+}
+
+void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
+    sum_line(pixels, exchange, "filter.sum_rows", RAYA_LEFT, RAYA_RIGHT);
+    sum_line(pixels, exchange, "filter.sum_columns", RAYA_ABOVE, RAYA_BELOW);
+    setup_.session.launch("filter.take_means", take_means_, setup_.pes, setup_.group_size, setup_.broadcast,
+                          setup_.capacity, pixels);
+}
+
+// pixels = (pixels + those on the first side) + those on the second side
+void RingFilter::sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
+                          raya_u32 first_side, raya_u32 second_side) {
+    setup_.session.copy("filter.begin_sums", pixels, 0, sums_, 0, pixels.size());
+    for (const raya_u32 side : {first_side, second_side})
+        exchange.visit(pixels, side, [&](const Arrival& arrival) {
+            add_neighbours(label, side, arrival, exchange.band(), setup_.capacity);
+        });
+    std::swap(pixels, sums_);
+}
+
+void RingFilter::add_neighbours(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
+                                std::uint32_t capacity) {
+    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast, side,
+                          arrival.distance, arrival.begin, band, capacity, arrival.blocks, sums_);
+}
+
+}  // namespace raya

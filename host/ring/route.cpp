@@ -1,0 +1,46 @@
+#include "ring/route.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace raya {
+
+std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side) {
+    std::vector<bool> found(mapping.pes);
+    for (std::uint32_t row = 0; row < mapping.height; ++row)
+        for (std::uint32_t column = 0; column < mapping.width; ++column) {
+            const raya_pixel pixel = {row, column};
+            if (!raya_has_neighbour(mapping, pixel, side)) continue;
+            const raya_pixel beside = raya_neighbour(pixel, side);
+            const std::uint32_t from = raya_owner(mapping, beside.row, beside.column);
+            const std::uint32_t to = raya_owner(mapping, row, column);
+            found[from >= to ? from - to : from + (mapping.pes - to)] = true;
+        }
+    std::vector<std::uint32_t> distances;
+    for (std::uint32_t d = 0; d < mapping.pes; ++d)
+        if (found[d]) distances.push_back(d);
+    return distances;
+}
+
+std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances) {
+    if (distances.empty()) return {};
+    // The first `down` distances are reached downwards, the others upwards, where distance d is P - d turns away.
+    std::size_t down = 0;
+    std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
+    for (std::size_t n = 0; n <= distances.size(); ++n) {
+        const std::uint64_t downwards = n ? distances[n - 1] : 0,
+                            upwards = n < distances.size() ? pes - distances[n] : 0;
+        if (downwards + upwards < fewest) {
+            fewest = downwards + upwards;
+            down = n;
+        }
+    }
+    const auto split = distances.begin() + static_cast<std::ptrdiff_t>(down);
+    std::vector<Leg> legs;
+    if (down) legs.push_back({Turn::kDown, {distances.begin(), split}});
+    if (split != distances.end()) legs.push_back({Turn::kUp, {}});
+    for (auto d = distances.end(); d != split;) legs.back().stops.push_back(pes - *--d);
+    return legs;
+}
+
+}  // namespace raya

@@ -1,0 +1,30 @@
+// Which PEs hold the neighbours of a PE's pixels, and the fewest rotations that bring their blocks.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "shared/neighbours.h"
+
+namespace raya {
+
+/// Every PE hands its block to the PE of the next lower number (kDown), or of the next higher one (kUp).
+enum class Turn { kDown, kUp };
+
+/// Rotations one way round, from the PEs' own blocks on. After s turns downwards PE i holds the block of PE i + s,
+/// after s turns upwards that of PE i - s, modulo P.
+struct Leg {
+    Turn turn = Turn::kDown;
+    std::vector<std::uint32_t> stops;  // turns after which the block is used, ascending; 0 is the PE's own
+
+    std::uint32_t turns() const { return stops.empty() ? 0 : stops.back(); }
+};
+
+/// All d in 0..P-1, ascending, such that the neighbour on `side` (RAYA_LEFT..RAYA_BELOW) of some pixel of some PE i
+/// belongs to PE (i + d) mod P. Empty where no pixel has one. Where a PE owns whole columns: left P - 1, right 1,
+/// above p, below P - p (Kohata & Ito 1993, cyclic mapping).
+std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side);
+
+/// The legs, at most one each way, that reach all `distances` with the fewest turns; downwards first.
+std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances);
+
+}  // namespace raya

@@ -1,0 +1,70 @@
+// The trace kernel: built for a job and a device, and launched in slices that each last about a second at most.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "ring/antialias.hpp"
+#include "ring/kernel_options.hpp"
+#include "scene/packer.hpp"
+
+namespace raya {
+
+/// Called now and then with the share of the pixels that are done, 0..1.
+using ProgressCallback = std::function<void(double)>;
+
+/// What one pass counts.
+struct PassCounters {
+    Buffer<std::uint64_t> cycles;  // [PE][capacity]: modelled cycles of each pixel
+    Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]
+};
+
+/// Pixels `begin` to `end` - 1 of each PE's share; they lie in the block whose first pixel has the number `block`.
+struct PixelRange {
+    std::uint32_t block = 0, begin = 0, end = 0;
+};
+
+class Tracer {
+  public:
+    /// `capacity`: pixels in the memory of each PE. `slice`: pixels of each share that one launch traces.
+    /// Checks the options as build_options does, builds the kernel with `more_options` appended.
+    Tracer(Session& session, const KernelOptions& options, const std::vector<std::string>& more_options,
+           const std::filesystem::path& kernel_dir, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice);
+
+    /// Counters of a pass, all 0.
+    PassCounters make_counters(const std::string& pass) const;
+    void clear(PassCounters& counters);
+
+    /// One launch for no pixels: PoCL compiles a kernel's body at its first launch, and this counts as building.
+    void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                 PassCounters& counters);
+
+    /// Traces `points` (RAYA_POINTS_*) of the range's pixels, of those marked only where the points are new ones. Every
+    /// command is labelled `label`. `job` has been broadcast.
+    void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+               const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+               const ProgressCallback& progress = {});
+
+    const KernelOptions& options() const { return options_; }
+    const std::string& build_options() const { return build_options_; }
+
+  private:
+    using TraceKernel = Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
+                               const Buffer<std::uint8_t>&, LocalMemory<std::uint32_t>, Buffer<float>&,
+                               Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
+
+    void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
+
+    Session& session_;
+    KernelOptions options_;
+    std::uint32_t pes_, capacity_, slice_;
+    std::string build_options_;
+    std::unique_ptr<TraceKernel> kernel_;
+};
+
+}  // namespace raya

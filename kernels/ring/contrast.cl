@@ -1,0 +1,41 @@
+// Where to supersample: a pixel is marked where one of its four neighbours differs from it by the threshold or more in red,
+// green or blue, each clamped to 0..1 (Kohata & Ito 1993, anti-aliasing). The difference is a number of the machine, rounded once.
+//
+// The host rotates the blocks of pixels as for the filter, and launches mark_contrasts whenever a block has arrived that holds
+// neighbours.
+//
+// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has arrived
+// in its memory, and nothing else.
+#include "ring/arrived.clh"
+
+static inline real clamped(real a) { return choose(a > 1.0f, num_all(1.0f), num_max(a, num_all(0.0f))); }
+
+static inline mask differs(real a, real b, real threshold) {
+    return num_abs(num_sub(clamped(a), clamped(b))) >= threshold;
+}
+
+// mark |= differs, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void mark_contrasts(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
+                    const uint side,                          // RAYA_LEFT..RAYA_BELOW
+                    const uint distance,                      // the block comes from PE (i + distance) mod P
+                    const uint begin,                         // number in its share of the block's first pixel
+                    const uint band,                          // pixels in the block
+                    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                    const float threshold,                    // a number of the format, 0..1
+                    __global const float* restrict arrived,   // [PE][band][3]
+                    __global const float* restrict pixels,    // [PE][capacity][3]
+                    __global uchar* restrict marks)           // [PE][capacity]: set to 1 where the pixel differs
+{
+    const uint pe = get_group_id(0);
+    const arrived_block block = open_arrived(((__global const raya_job*)broadcast)->mapping, pe, distance, side, begin, band, arrived);
+    __global const float* own = pixels + (size_t)pe * capacity * 3;
+    __global uchar* mine = marks + (size_t)pe * capacity;
+    const uint end = min(capacity, raya_share_size(block.share));
+    for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
+        const uint n = arrived_neighbour(&block, k);
+        if (n == RAYA_NOT_HERE) continue;
+        const vec a = colour_at(own, k), b = colour_at(block.words, n);
+        if (differs(a.x, b.x, threshold) || differs(a.y, b.y, threshold) || differs(a.z, b.z, threshold)) mine[k] = 1;
+    }
+}

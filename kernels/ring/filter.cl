@@ -1,0 +1,57 @@
+// The 3 x 3 filter: every pixel becomes the mean of its neighbourhood, in two steps (Kohata & Ito 1993, anti-aliasing):
+//
+//     rows:     sum = (own + left) + right          of the pixels, each brought by rotations
+//     columns:  sum = (own + above) + below         of those sums
+//     pixel = sum / 9                               at the border, by as many pixels as there are: 6, 4, ...
+//
+// Sums and quotient are the machine's own numbers. The host copies `own` to `sum`, rotates the blocks, and launches add_neighbours
+// whenever a block has arrived that holds neighbours; take_means comes last.
+//
+// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has arrived
+// in its memory, and nothing else.
+#include "ring/arrived.clh"
+
+// sum += neighbour, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void add_neighbours(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
+                    const uint side,                          // RAYA_LEFT..RAYA_BELOW
+                    const uint distance,                      // the block comes from PE (i + distance) mod P
+                    const uint begin,                         // number in its share of the block's first pixel
+                    const uint band,                          // pixels in the block
+                    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                    __global const float* restrict arrived,   // [PE][band][3]
+                    __global float* restrict sums)            // [PE][capacity][3]: added to
+{
+    const uint pe = get_group_id(0);
+    const arrived_block block = open_arrived(((__global const raya_job*)broadcast)->mapping, pe, distance, side, begin, band, arrived);
+    __global float* mine = sums + (size_t)pe * capacity * 3;
+    const uint end = min(capacity, raya_share_size(block.share));
+    for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
+        const uint n = arrived_neighbour(&block, k);
+        if (n == RAYA_NOT_HERE) continue;
+        const vec sum = vec_add(colour_at(mine, k), colour_at(block.words, n));
+        mine[3 * k] = sum.x;
+        mine[3 * k + 1] = sum.y;
+        mine[3 * k + 2] = sum.z;
+    }
+}
+
+// sum / (pixels of the neighbourhood that lie in the image)
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void take_means(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
+                const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                __global float* restrict sums)            // [PE][capacity][3]: sums on entry, means on return
+{
+    const uint pe = get_group_id(0);
+    const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
+    const raya_share share = raya_share_of(m, pe);
+    __global float* mine = sums + (size_t)pe * capacity * 3;
+    const uint end = min(capacity, raya_share_size(share));
+    for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
+        const raya_pixel pixel = raya_pixel_of(m, share, k);
+        const uint columns = 1 + raya_has_neighbour(m, pixel, RAYA_LEFT) + raya_has_neighbour(m, pixel, RAYA_RIGHT);
+        const uint rows = 1 + raya_has_neighbour(m, pixel, RAYA_ABOVE) + raya_has_neighbour(m, pixel, RAYA_BELOW);
+        const real pixels = num_from_index(rows * columns);
+        for (uint i = 3 * k; i < 3 * k + 3; ++i) mine[i] = num_div(mine[i], pixels);
+    }
+}

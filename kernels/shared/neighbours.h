@@ -1,0 +1,46 @@
+// The four neighbours of a pixel in the image, and the points of a pixel through which primary rays go.
+#ifndef RAYA_SHARED_NEIGHBOURS_H
+#define RAYA_SHARED_NEIGHBOURS_H
+#include "shared/mapping.h"
+
+enum { RAYA_LEFT, RAYA_RIGHT, RAYA_ABOVE, RAYA_BELOW, RAYA_SIDES };
+
+// False at the image's border: nothing lies beyond it.
+RAYA_SHARED_FUNCTION int raya_has_neighbour(raya_mapping m, raya_pixel pixel, raya_u32 side) {
+    if (side == RAYA_LEFT) return pixel.column > 0;
+    if (side == RAYA_RIGHT) return pixel.column + 1 < m.width;
+    if (side == RAYA_ABOVE) return pixel.row > 0;
+    return pixel.row + 1 < m.height;
+}
+
+// The pixel on that side, where there is one.
+RAYA_SHARED_FUNCTION raya_pixel raya_neighbour(raya_pixel pixel, raya_u32 side) {
+    if (side == RAYA_LEFT) pixel.column -= 1;
+    if (side == RAYA_RIGHT) pixel.column += 1;
+    if (side == RAYA_ABOVE) pixel.row -= 1;
+    if (side == RAYA_BELOW) pixel.row += 1;
+    return pixel;
+}
+
+// Which points of a pixel are traced: its own, or four new ones half a pixel away from it (Kohata & Ito 1993, supersampling).
+enum {
+    RAYA_POINTS_OWN,       // one: the sample point of kernels/README.md, Camera
+    RAYA_POINTS_AXES,      // four: to the left, right, above, below
+    RAYA_POINTS_DIAGONALS  // four: to the upper left, upper right, lower left, lower right, half a pixel along both axes
+};
+
+#define RAYA_NEW_POINTS 4u
+
+RAYA_SHARED_FUNCTION raya_u32 raya_points(raya_u32 points) { return points == RAYA_POINTS_OWN ? 1u : RAYA_NEW_POINTS; }
+
+// Where point n < raya_points(points) lies, seen from the pixel's own: pixels to the right and down.
+RAYA_SHARED_FUNCTION float raya_point_right(raya_u32 points, raya_u32 n) {
+    if (points == RAYA_POINTS_DIAGONALS) return n & 1u ? 0.5f : -0.5f;
+    return points == RAYA_POINTS_OWN || n > 1u ? 0.0f : n == 1u ? 0.5f : -0.5f;
+}
+RAYA_SHARED_FUNCTION float raya_point_down(raya_u32 points, raya_u32 n) {
+    if (points == RAYA_POINTS_DIAGONALS) return n & 2u ? 0.5f : -0.5f;
+    return points == RAYA_POINTS_OWN || n < 2u ? 0.0f : n == 3u ? 0.5f : -0.5f;
+}
+
+#endif

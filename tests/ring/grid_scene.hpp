@@ -1,0 +1,37 @@
+// A small scene for tests, seen in such a way that every primary ray is exact in every format.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "scene/packer.hpp"
+#include "scene/scene.hpp"
+
+namespace raya {
+
+/// Two shiny spheres above a checkered floor, whose edges cross the middle of the image; brighter than 1 in places.
+inline Scene grid_objects() {
+    Scene scene;
+    scene.name = "grid";
+    scene.background = {0.3, 0.5, 0.8};
+    scene.lights = {{{-3, 6, -4}, Colour{1.5, 1.4, 1.1}}};
+    scene.surfaces = {{.diffuse = 0.8, .checker = Checker{{0.9, 0.8, 0.7}, {0.3, 0.25, 0.2}, 0.5}},
+                      {.colour = {0.9, 0.2, 0.1}, .diffuse = 0.7, .specular = 0.6, .shine = 20},
+                      {.colour = {0.2, 0.2, 0.9}, .diffuse = 0.5, .specular = 0.3, .shine = 50}};
+    scene.spheres = {{{0.62, 0.1, 5}, 0.6, 1}, {{-0.7, 0.2, 4}, 0.65, 2}};
+    scene.planes = {{{0, 1, 0}, -0.15, 0}};
+    return scene;
+}
+
+/// The scene looked at along an axis, in an image of so many rows, with 1 / `pixels_of_unit` from one pixel to the next
+/// at distance 1. Where that is a power of two, corner and steps of the primary rays have few bits and rays are exact.
+/// So images with different steps send the very same ray through the same point, however many pixels they have.
+inline Scene grid_scene(std::uint32_t rows, Sampling sampling, double pixels_of_unit) {
+    Scene scene = grid_objects();
+    const double steps = sampling == Sampling::kCorners ? std::max(1.0, rows - 1.0) : rows;
+    scene.view.angle_degrees = 2 * std::atan(steps / 2 / pixels_of_unit) * 180 / std::numbers::pi;
+    return scene;
+}
+
+}  // namespace raya

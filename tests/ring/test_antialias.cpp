@@ -1,0 +1,265 @@
+// Anti-aliasing on the ring against plain functions of whole images (whole_image.hpp), bit for bit, for random ways of
+// spreading an image over PEs. RAYA_ANTIALIAS_CASES=1000 asks for more of them than the usual run.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <tuple>
+
+#include "ring/grid_scene.hpp"
+#include "ring/render_scene.hpp"
+#include "ring/small_mapping.hpp"
+#include "ring/whole_image.hpp"
+
+namespace raya {
+namespace {
+
+using whole_image::unlike_values;
+using whole_image::value_at;
+
+constexpr double kPixelsOfUnit = 32;
+
+/// Few sizes, so that few images are rendered to compare with; sides of one and two pixels have few neighbours.
+constexpr std::array<std::array<std::uint32_t, 2>, 10> kSizes = {
+    {{1, 1}, {1, 9}, {8, 1}, {2, 2}, {3, 2}, {7, 5}, {17, 13}, {32, 20}, {8, 40}, {39, 40}}};
+
+int cases() {
+    const char* given = std::getenv("RAYA_ANTIALIAS_CASES");
+    return given ? std::atoi(given) : 30;
+}
+
+/// P divides W as often as not, and is 1..W H.
+RingCase random_case(SplitMix& random, const std::string& format) {
+    const auto& size = kSizes[random_below(random, kSizes.size())];
+    RingCase c{.width = size[0], .height = size[1], .format = format};
+    c.pes = 1 + random_below(random, random.next() % 2 ? c.width : c.width * c.height);
+    while (random.next() % 2 && c.width % c.pes) c.pes = 1 + random_below(random, c.width);
+    c.offset = random_below(random, c.width);
+    c.fold = random.next() % 2 ? "block" : "cyclic";
+    c.sampling = c.width % 2 ? Sampling::kCorners : Sampling::kCentres;
+    return c;
+}
+
+Antialias random_supersampling(SplitMix& random) {
+    constexpr std::array<double, 4> kThresholds = {0, 1, 0.125, 0.03125};
+    const std::uint32_t choice = random_below(random, 8);
+    return {.method = AntialiasMethod::kSupersample,
+            .threshold =
+                choice < kThresholds.size() ? kThresholds[choice] : std::ldexp(random_below(random, 1u << 30), -31),
+            .points = random.next() % 2 ? RAYA_POINTS_AXES : RAYA_POINTS_DIAGONALS};
+}
+
+/// Plain images of the scene from one PE, each rendered once.
+class PlainImages {
+  public:
+    explicit PlainImages(Session& session) : session_(session) {}
+
+    /// Without anti-aliasing.
+    const RingResult& of(const RingCase& c) { return render(c, c.width, c.height, kPixelsOfUnit); }
+
+    /// The same picture from points half a pixel apart: point (2 j + 1, 2 x + 1) is the own one of pixel (j, x), and
+    /// half a pixel of the surroundings shows.
+    const RingResult& fine(const RingCase& c) {
+        RingCase centres = c;
+        centres.sampling = Sampling::kCentres;
+        return render(centres, 2 * c.width + 1, 2 * c.height + 1, 2 * kPixelsOfUnit);
+    }
+
+  private:
+    const RingResult& render(const RingCase& c, std::uint32_t width, std::uint32_t height, double pixels_of_unit) {
+        const auto key = std::tuple(c.format, c.sampling, width, height, pixels_of_unit);
+        const auto found = images_.find(key);
+        if (found != images_.end()) return found->second;
+        const RingSettings settings = settings_of(
+            {.width = width, .height = height, .pes = 1, .offset = 0, .sampling = c.sampling, .format = c.format});
+        RingRenderer renderer(session_, grid_scene(height, c.sampling, pixels_of_unit), settings);
+        return images_.emplace(key, renderer.render()).first->second;
+    }
+
+    Session& session_;
+    std::map<std::tuple<std::string, Sampling, std::uint32_t, std::uint32_t, double>, RingResult> images_;
+};
+
+RingResult render_case(Session& session, const RingCase& c) {
+    return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsOfUnit), settings_of(c)).render();
+}
+
+// Where a pixel's new points lie, in half pixels down and to the right, in the order of their sum.
+using Offsets = std::array<std::array<int, 2>, 4>;
+constexpr Offsets kAxes = {{{0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
+constexpr Offsets kDiagonals = {{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}};
+
+const Offsets& offsets_of(const Antialias& antialias) {
+    return antialias.points == RAYA_POINTS_AXES ? kAxes : kDiagonals;
+}
+
+/// The mean of the point (row, column) of an image twice as fine and of the four new ones around it.
+float mean_of_points(const Image& fine, int row, int column, int colour, const RingCase& c) {
+    std::array<float, 5> values = {value_at(fine, row, column, colour)};
+    for (std::size_t n = 0; n < 4; ++n) {
+        const auto& offset = offsets_of(c.antialias)[n];
+        values[n + 1] = value_at(fine, row + offset[0], column + offset[1], colour);
+    }
+    return whole_image::mean_of_five(values, settings_of(c).format);
+}
+
+/// The plain image with the mean of five points in the pixels of the mask.
+Image supersampled(const Image& plain, const Image& fine, const Image& mask, const RingCase& c) {
+    return whole_image::make_image(plain.width, plain.height, [&](int row, int column, int colour) {
+        if (value_at(mask, row, column, 0) == 0) return value_at(plain, row, column, colour);
+        return mean_of_points(fine, 2 * row + 1, 2 * column + 1, colour, c);
+    });
+}
+
+/// What the four new points of each pixel of the mask cost; 0 in the others.
+std::vector<float> supersampling_cost(const GreyImage& fine, const Image& mask, const RingCase& c) {
+    std::vector<float> cost;
+    for (int row = 0; row < mask.height; ++row)
+        for (int column = 0; column < mask.width; ++column) {
+            float sum = 0;
+            for (const auto& offset : offsets_of(c.antialias))
+                sum += fine.values[std::size_t((2 * row + 1 + offset[0]) * fine.width + 2 * column + 1 + offset[1])];
+            cost.push_back(value_at(mask, row, column, 0) ? sum : 0);
+        }
+    return cost;
+}
+
+std::size_t pixels_of(const Image& mask) {
+    return static_cast<std::size_t>(std::count(mask.rgb.begin(), mask.rgb.end(), 1.0f)) / 3;
+}
+
+/// The pixels' own points among finer ones.
+Image own_points(const Image& fine) {
+    return whole_image::make_image(fine.width / 2, fine.height / 2, [&](int row, int column, int colour) {
+        return value_at(fine, 2 * row + 1, 2 * column + 1, colour);
+    });
+}
+
+void check_supersampled(const RingResult& result, const RingResult& plain, const RingResult& fine, const RingCase& c) {
+    const Image mask = whole_image::contrast_mask(plain.image, c.antialias.threshold, settings_of(c).format);
+    const std::size_t marked = pixels_of(mask);
+    REQUIRE(unlike_values(own_points(fine.image), plain.image) == 0);
+    CHECK(unlike_values(result.mask, mask) == 0);
+    CHECK(result.recomputed == marked);
+    CHECK(unlike_values(result.image, supersampled(plain.image, fine.image, mask, c)) == 0);
+    REQUIRE(result.phases.size() == 2);
+    CHECK(result.phases[0].events == plain.all.events);
+    CHECK(result.phases[0].cost.values == plain.all.cost.values);
+    CHECK(result.phases[1].events[RAYA_PRIMARY] == 4 * marked);
+    CHECK(result.phases[1].cost.values == supersampling_cost(fine.all.cost, mask, c));
+}
+
+}  // namespace
+
+TEST_CASE("the ring's filter is the filter of the whole image", "[ring][antialias]") {
+    constexpr std::uint64_t kSeed = 31;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    PlainImages plain(session);
+    std::uint64_t rotations = 0;
+    for (const char* format : {"fp32", "spa22"})
+        for (int i = 0; i < cases(); ++i) {
+            RingCase c = random_case(random, format);
+            c.antialias.method = AntialiasMethod::kFilter;
+            CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold);
+            const RingResult result = render_case(session, c), &expected = plain.of(c);
+            CHECK(unlike_values(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
+            CHECK(result.all.events == expected.all.events);
+            CHECK(result.all.cost.values == expected.all.cost.values);
+            CHECK(result.phases.size() == 1);
+            CHECK(result.mask.rgb.empty());
+            rotations += result.communication.rotations;
+        }
+    CHECK(rotations > 0);
+}
+
+TEST_CASE("supersampling takes the mean of five points where a neighbour differs", "[ring][antialias]") {
+    constexpr std::uint64_t kSeed = 32;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    PlainImages plain(session);
+    std::size_t recomputed = 0, pixels = 0, mixed = 0;
+    for (const char* format : {"fp32", "spa22"})
+        for (int i = 0; i < cases(); ++i) {
+            RingCase c = random_case(random, format);
+            c.antialias = random_supersampling(random);
+            CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold, c.sampling == Sampling::kCorners);
+            CAPTURE(c.antialias.threshold, c.antialias.points);
+            const RingResult result = render_case(session, c);
+            check_supersampled(result, plain.of(c), plain.fine(c), c);
+            const std::size_t size = std::size_t{c.width} * c.height;
+            if (c.antialias.threshold == 0 && size > 1) CHECK(result.recomputed == size);
+            mixed += result.recomputed > 0 && result.recomputed < size;
+            recomputed += result.recomputed;
+            pixels += size;
+        }
+    CHECK(recomputed > pixels / 10);  // these cases hold marked pixels and others
+    CHECK(recomputed < pixels * 9 / 10);
+    CHECK(mixed > std::size_t(cases()) / 2);
+}
+
+TEST_CASE("with any camera the new points lie half a pixel away", "[ring][antialias]") {
+    const Scene scene = project_scene("spheres");
+    Session session(choose_device(""));
+    constexpr int kWidth = 33, kHeight = 21;
+    for (const char* format : {"fp32", "spa22"}) {
+        // Steps between pixel corners are halved exactly where the number of intervals is doubled. Points outside of
+        // the outermost pixels' own are not in the finer image: those pixels, 104 of 693, are left out.
+        const RingCase fine_case{
+            .width = 2 * kWidth - 1, .height = 2 * kHeight - 1, .sampling = Sampling::kCorners, .format = format};
+        const Image fine = RingRenderer(session, scene, settings_of(fine_case)).render().image;
+        for (const raya_u32 points : {RAYA_POINTS_AXES, RAYA_POINTS_DIAGONALS}) {
+            const RingCase c{.width = kWidth,
+                             .height = kHeight,
+                             .sampling = Sampling::kCorners,
+                             .format = format,
+                             .antialias = {AntialiasMethod::kSupersample, 0, points}};
+            const RingResult result = RingRenderer(session, scene, settings_of(c)).render();
+            const Image expected = whole_image::make_image(kWidth, kHeight, [&](int row, int column, int colour) {
+                const bool inner = row > 0 && row + 1 < kHeight && column > 0 && column + 1 < kWidth;
+                if (!inner) return value_at(result.image, row, column, colour);
+                return mean_of_points(fine, 2 * row, 2 * column, colour, c);
+            });
+            CAPTURE(format, points);
+            CHECK(result.recomputed == kWidth * kHeight);
+            CHECK(unlike_values(result.image, expected) == 0);
+        }
+    }
+}
+
+TEST_CASE("a difference equal to the threshold counts, one beyond 0..1 does not", "[ring][antialias]") {
+    Session session(choose_device(""));
+    const std::string format = GENERATE("fp32", "spa22");
+    const double last_place = format == "fp32" ? 0x1p-23 : 0x1p-15;
+    // Without a light, a surface of Kd = 1 shows its colour: this image has two colours that differ in one component.
+    const auto recomputed = [&](double surrounding, double object, double threshold, int component) {
+        Scene scene = grid_scene(24, Sampling::kCentres, kPixelsOfUnit);
+        scene.background = scene.surfaces[1].colour = {0.5, 0.5, 0.5};
+        scene.background[component] = surrounding;
+        scene.surfaces[1] = {.colour = scene.surfaces[1].colour, .diffuse = 1};
+        scene.surfaces[1].colour[component] = object;
+        scene.lights.clear();
+        scene.planes.clear();
+        scene.spheres.resize(1);
+        const RingCase c{.width = 16,
+                         .height = 24,
+                         .pes = 16,
+                         .format = format,
+                         .antialias = {.method = AntialiasMethod::kSupersample, .threshold = threshold}};
+        return RingRenderer(session, scene, settings_of(c)).render().recomputed;
+    };
+    const std::uint64_t outline = recomputed(0, 1, 0.5, 0);
+    CAPTURE(format);
+    CHECK(outline > 10);
+    CHECK(outline < 100);
+    CHECK(recomputed(0.25, 0.375, 0.125, 0) == outline);
+    CHECK(recomputed(0.25, 0.375, 0.125, 1) == outline);
+    CHECK(recomputed(0.375, 0.25, 0.125, 2) == outline);
+    CHECK(recomputed(0.25, 0.375, 0.125 * (1 + last_place), 0) == 0);
+    CHECK(recomputed(0.25, 0.375 - 0.25 * last_place, 0.125, 2) == 0);
+    CHECK(recomputed(-7, 0, 0.125, 1) == 0);
+    CHECK(recomputed(1, 9, 0.125, 0) == 0);
+    CHECK(recomputed(-7, 9, 1, 1) == outline);
+}
+
+}  // namespace raya

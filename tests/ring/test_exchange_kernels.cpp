@@ -1,0 +1,259 @@
+// The kernels of the neighbour exchange: a PE reads its own memory alone and writes its own memory alone. Poison in all
+// other PEs' memory changes nothing, and faults put into the kernels on purpose are seen.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "cl/kernel_source.hpp"
+#include "ring/kernel_options.hpp"
+#include "ring/mapping.hpp"
+#include "ring/route.hpp"
+#include "ring/small_mapping.hpp"
+#include "shared/job.h"
+
+using namespace raya;
+
+namespace {
+
+enum class Step { kAddNeighbours, kTakeMeans, kMarkContrasts };
+constexpr Step kSteps[] = {Step::kAddNeighbours, Step::kTakeMeans, Step::kMarkContrasts};
+
+const char* step_name(Step step) {
+    return step == Step::kAddNeighbours ? "add_neighbours" : step == Step::kTakeMeans ? "take_means" : "mark_contrasts";
+}
+
+std::string step_file(Step step) { return step == Step::kMarkContrasts ? "ring/contrast.cl" : "ring/filter.cl"; }
+
+struct Launch {
+    raya_mapping m{};
+    std::uint32_t side = 0, distance = 0, begin = 0, band = 1, capacity = 1;
+    float threshold = 0;
+};
+
+/// The memory of all PEs, block after block, and of one more that does not exist: nobody may touch it.
+struct Memory {
+    std::vector<float> arrived, pixels;  // [PE][band][3], [PE][capacity][3]: pixels or their sums
+    std::vector<std::uint8_t> marks;     // [PE][capacity]
+};
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b, std::size_t from, std::size_t to) {
+    return from == to || std::memcmp(a.data() + from, b.data() + from, (to - from) * sizeof(T)) == 0;
+}
+
+/// Whether the memories agree to the bit in the blocks first..end-1.
+bool same_blocks(const Launch& l, const Memory& a, const Memory& b, std::size_t first, std::size_t end) {
+    const std::size_t band = 3 * l.band, block = 3 * l.capacity;
+    return same_bits(a.arrived, b.arrived, first * band, end * band) &&
+           same_bits(a.pixels, b.pixels, first * block, end * block) &&
+           same_bits(a.marks, b.marks, first * l.capacity, end * l.capacity);
+}
+
+/// The kernel of a step, from a source text that may hold a fault.
+class Runner {
+  public:
+    Runner(Session& session, Step step, std::uint32_t group, const std::string& format, const std::string& source)
+        : session_(session), step_(step), group_(group), program_(build(format, source)) {}
+
+    /// The memory after the first `groups` PEs have run.
+    Memory run(const Launch& l, const Memory& before, std::size_t groups) {
+        if (groups == 0) return before;
+        raya_job job{};
+        job.mapping = l.m;
+        std::vector<std::uint32_t> words(sizeof(job) / 4);
+        std::memcpy(words.data(), &job, sizeof job);
+        const Buffer<std::uint32_t> broadcast = filled("job", words);
+        const Buffer<float> arrived = filled("arrived", before.arrived);
+        Buffer<float> pixels = filled("pixels", before.pixels);
+        Buffer<std::uint8_t> marks = filled("marks", before.marks);
+        launch(l, groups, broadcast, arrived, pixels, marks);
+        Memory after = before;
+        session_.read("arrived", arrived, after.arrived);
+        session_.read("pixels", pixels, after.pixels);
+        session_.read("marks", marks, after.marks);
+        return after;
+    }
+
+  private:
+    using Words = const Buffer<std::uint32_t>&;
+    using Floats = const Buffer<float>&;
+
+    Program build(const std::string& format, const std::string& source) const {
+        const KernelOptions options = {.lanes = 1, .group_size = group_, .format = parse_format(format)};
+        return session_.build(step_file(step_), source, build_options(options, session_.device()));
+    }
+
+    template <class T>
+    Buffer<T> filled(const std::string& name, const std::vector<T>& values) {
+        Buffer<T> buffer = session_.buffer<T>(name, values.size());
+        session_.write(name, buffer, values);
+        return buffer;
+    }
+
+    void launch(const Launch& l, std::size_t groups, Words job, Floats arrived, Buffer<float>& pixels,
+                Buffer<std::uint8_t>& marks) {
+        const std::string name = step_name(step_);
+        if (step_ == Step::kTakeMeans) {
+            auto kernel = program_.kernel<Words, cl_uint, Buffer<float>&>(name);
+            session_.launch(name, kernel, groups, group_, job, l.capacity, pixels);
+        } else if (step_ == Step::kAddNeighbours) {
+            auto kernel =
+                program_.kernel<Words, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, Floats, Buffer<float>&>(name);
+            session_.launch(name, kernel, groups, group_, job, l.side, l.distance, l.begin, l.band, l.capacity, arrived,
+                            pixels);
+        } else {
+            auto kernel = program_.kernel<Words, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_float, Floats, Floats,
+                                          Buffer<std::uint8_t>&>(name);
+            session_.launch(name, kernel, groups, group_, job, l.side, l.distance, l.begin, l.band, l.capacity,
+                            l.threshold, arrived, pixels, marks);
+        }
+    }
+
+    Session& session_;
+    Step step_;
+    std::uint32_t group_;
+    Program program_;
+};
+
+/// A launch as an exchange makes it: of a block that holds neighbours, mostly.
+Launch random_launch(SplitMix& random) {
+    Launch l{.m = small_mapping(random, 9), .side = random_below(random, RAYA_SIDES)};
+    const std::vector<std::uint32_t> distances = neighbour_distances(l.m, l.side);
+    l.distance = distances.empty() || random.next() % 8 == 0 ? random_below(random, l.m.pes)
+                                                             : distances[random_below(random, distances.size())];
+    l.capacity = largest_share(l.m);
+    l.band = 1 + random_below(random, l.capacity);
+    l.begin = l.band * random_below(random, (l.capacity + l.band - 1) / l.band);
+    l.threshold = 0.125f * static_cast<float>(1 + random_below(random, 6));
+    return l;
+}
+
+/// Colours around 0..1, and a mark here and there.
+Memory random_memory(SplitMix& random, const Launch& l) {
+    const auto colours = [&](std::size_t count) {
+        std::vector<float> words(count);
+        for (float& word : words) word = static_cast<float>(static_cast<int>(random.next() % 769) - 128) / 512;
+        return words;
+    };
+    const std::size_t blocks = std::size_t{l.m.pes} + 1;
+    Memory memory{colours(blocks * l.band * 3), colours(blocks * l.capacity * 3), {}};
+    for (std::size_t n = 0; n < blocks * l.capacity; ++n) memory.marks.push_back(random.next() % 8 == 0);
+    return memory;
+}
+
+/// Poison in everything but what PE i may read: its own memory, and of the block that has arrived in it the pixels that
+/// the sender has (a band that ends behind the sender's share is stale there).
+Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::size_t pe) {
+    const float poison = random.next() % 2 ? std::numeric_limits<float>::quiet_NaN() : 1e30f;
+    Memory memory = clean;
+    const raya_u32 sent = raya_share_size(raya_share_of(l.m, static_cast<raya_u32>((pe + l.distance) % l.m.pes)));
+    const std::size_t live = 3 * std::min(l.band, sent - std::min(sent, l.begin));
+    const std::size_t band = 3 * l.band, block = 3 * l.capacity;
+    for (std::size_t n = 0; n < memory.arrived.size(); ++n)
+        if (n < pe * band || n >= pe * band + live) memory.arrived[n] = poison;
+    for (std::size_t n = 0; n < memory.pixels.size(); ++n)
+        if (n / block != pe) memory.pixels[n] = poison;
+    for (std::size_t n = 0; n < memory.marks.size(); ++n)
+        if (n / l.capacity != pe) memory.marks[n] = 0xa5;
+    return memory;
+}
+
+struct Findings {
+    int poison_read = 0;    // PEs whose result another PE's memory, or stale words, changed
+    int stray_writes = 0;   // PEs that changed more than their own block
+    int blocks_worked = 0;  // PEs whose block a launch changed: without them nothing is shown
+};
+
+Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
+    SplitMix random(seed);
+    Findings found;
+    for (int i = 0; i < launches; ++i) {
+        const Launch l = random_launch(random);
+        const Memory before = random_memory(random, l), after = runner.run(l, before, l.m.pes);
+        for (int choice = 0; choice < 2; ++choice) {
+            const std::size_t pe = random_below(random, l.m.pes);
+            const Memory seen = runner.run(l, poisoned(random, l, before, pe), l.m.pes);
+            Memory expected = after;  // but for the stale words, which stay what they were
+            const auto at = static_cast<std::ptrdiff_t>(3 * pe * l.band);
+            std::copy_n(seen.arrived.begin() + at, 3 * l.band, expected.arrived.begin() + at);
+            found.poison_read += !same_blocks(l, expected, seen, pe, pe + 1);
+            found.blocks_worked += !same_blocks(l, before, after, pe, pe + 1);
+        }
+        // What the last of the first `groups` PEs adds to the work of those before it.
+        const std::size_t groups = 1 + random_below(random, l.m.pes);
+        const Memory without = runner.run(l, before, groups - 1), with = runner.run(l, before, groups);
+        found.stray_writes += !same_blocks(l, without, with, 0, groups - 1) ||
+                              !same_blocks(l, without, with, groups, std::size_t{l.m.pes} + 1);
+    }
+    return found;
+}
+
+struct Fault {
+    const char* what;
+    Step step;
+    const char *from, *to;
+    bool reads, writes;  // which of the two findings must show it
+};
+
+const Fault kFaults[] = {
+    {"the block that arrived next door", Step::kAddNeighbours, "arrived + (size_t)pe * band",
+     "arrived + (size_t)((pe + 1) % m.pes) * band", true, false},
+    {"beyond the end of the band", Step::kAddNeighbours, " && n - a->begin < a->band", "", true, false},
+    {"beyond the end of the sender's share", Step::kAddNeighbours, "a.sender = raya_share_of(m, a.source)",
+     "a.sender = a.share", true, false},
+    {"the sums next door", Step::kAddNeighbours, "sums + (size_t)pe * capacity", "sums + (size_t)(pe + 1) * capacity",
+     false, true},
+    {"the sums next door", Step::kTakeMeans, "(size_t)pe * capacity", "(size_t)(pe + 1) * capacity", false, true},
+    {"the sums of the first PE", Step::kTakeMeans, "num_div(mine[i], pixels)", "num_div(sums[i], pixels)", true, false},
+    {"one pixel too many", Step::kTakeMeans, "min(capacity, raya_share_size(share))", "raya_share_size(share) + 1",
+     false, true},
+    {"the pixels next door", Step::kMarkContrasts, "pixels + (size_t)pe * capacity",
+     "pixels + (size_t)((pe + 1) % block.mapping.pes) * capacity", true, false},
+    {"the marks next door", Step::kMarkContrasts, "marks + (size_t)pe * capacity",
+     "marks + (size_t)(pe + 1) * capacity", false, true},
+};
+
+/// The kernel's text with the fault in it, wherever its line stands. Fails where the line is not there any more.
+std::string faulty_source(const Fault& fault) {
+    std::string text = kernel_source(step_file(fault.step));
+    INFO(fault.what << ": no '" << fault.from << "' any more");
+    REQUIRE(text.find(fault.from) != std::string::npos);
+    const std::string to = fault.to;
+    for (std::size_t at = 0; (at = text.find(fault.from, at)) != std::string::npos; at += to.size())
+        text.replace(at, std::strlen(fault.from), to);
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("poison in other PEs' memory changes no PE's result, and none writes there", "[ring][exchange]") {
+    constexpr std::uint64_t kSeed = 13;
+    Session session(choose_device(""));
+    for (const Step step : kSteps)
+        for (const std::uint32_t group : {1u, 3u}) {
+            const std::string format = group == 1 ? "fp32" : "e6m15";  // a build of a kernel takes most of the time
+            CAPTURE(kSeed, step_name(step), group, format);
+            Runner runner(session, step, group, format, kernel_source(step_file(step)));
+            const Findings found = find_faults(runner, kSeed + group, 100);
+            CHECK(found.poison_read == 0);
+            CHECK(found.stray_writes == 0);
+            CHECK(found.blocks_worked > 60);
+        }
+}
+
+TEST_CASE("kernels that reach into another PE are found out", "[ring][exchange]") {
+    constexpr std::uint64_t kSeed = 14;
+    Session session(choose_device(""));
+    for (const Fault& fault : kFaults) {
+        CAPTURE(kSeed, fault.what, step_name(fault.step));
+        Runner runner(session, fault.step, 1, "fp32", faulty_source(fault));
+        const Findings found = find_faults(runner, kSeed, 40);
+        if (fault.reads) CHECK(found.poison_read > 0);
+        if (fault.writes) CHECK(found.stray_writes > 0);
+    }
+}

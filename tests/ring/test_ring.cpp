@@ -1,0 +1,205 @@
+// Rotations move every PE's block to its neighbour, bit for bit, and are counted as what they copy.
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "ring/mapping.hpp"
+#include "ring/neighbour_exchange.hpp"
+#include "ring/ring.hpp"
+#include "ring/small_mapping.hpp"
+
+using namespace raya;
+
+namespace {
+
+using Bits = std::vector<std::uint32_t>;  // floats as their bits: NaN is compared too
+
+/// Words of a memory; half of them are what a copy through arithmetic would spoil.
+Bits random_words(SplitMix& random, std::size_t count) {
+    const std::uint32_t odd[] = {0x80000000u, 0x7fc12345u, 0x7f800001u, 0xff923456u, 0x00000001u, 0x7f800000u};
+    Bits words(count);
+    for (std::uint32_t& word : words) word = random.next() % 2 ? odd[random.next() % 6] : std::uint32_t(random.next());
+    return words;
+}
+
+Bits contents(Session& session, const Buffer<float>& buffer) {
+    std::vector<float> words(buffer.size());
+    session.read("contents", buffer, words);
+    Bits bits(words.size());
+    std::memcpy(bits.data(), words.data(), 4 * words.size());
+    return bits;
+}
+
+Buffer<float> filled(Session& session, const std::string& name, const Bits& bits) {
+    std::vector<float> words(bits.size());
+    std::memcpy(words.data(), bits.data(), 4 * bits.size());
+    Buffer<float> buffer = session.buffer<float>(name, words.size());
+    session.write(name, buffer, words);
+    return buffer;
+}
+
+/// Block i is what block (i + distance) mod P was.
+Bits turned(const Bits& blocks, std::size_t pes, std::size_t distance) {
+    Bits moved(blocks.size());
+    const std::size_t size = blocks.size() / pes;
+    for (std::size_t i = 0; i < pes; ++i)
+        for (std::size_t n = 0; n < size; ++n) moved[i * size + n] = blocks[(i + distance) % pes * size + n];
+    return moved;
+}
+
+/// Bytes of all copies between buffers whose label begins so.
+std::uint64_t copied_bytes(Session& session, const std::string& label) {
+    std::uint64_t bytes = 0;
+    for (const CommandRecord& command : session.profile().commands())
+        if (command.kind == "copy" && command.label.starts_with(label)) bytes += command.bytes;
+    return bytes;
+}
+
+/// Commands other than copies and the tests' own transfers.
+std::size_t other_commands(Session& session) {
+    const auto& all = session.profile().commands();
+    return static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [](const CommandRecord& c) { return c.kind != "copy"; }));
+}
+
+constexpr std::size_t kRings[] = {1, 2, 3, 7, 64};
+
+}  // namespace
+
+TEST_CASE("a rotation hands every block to the neighbour, bit for bit, either way", "[ring]") {
+    constexpr std::uint64_t kSeed = 8;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    for (const std::size_t pes : kRings)
+        for (const std::size_t block : {1, 3, 17, 768}) {
+            CAPTURE(kSeed, pes, block);
+            Communication counted;
+            Ring ring(session, counted, pes, block);
+            const Bits before = random_words(random, pes * block);
+            const Buffer<float> own = filled(session, "own", before);
+            ring.load(own, block, 0);
+            CHECK(contents(session, ring.blocks()) == before);
+            ring.rotate(Turn::kDown);  // PE i has what PE i + 1 had
+            CHECK(contents(session, ring.blocks()) == turned(before, pes, 1));
+            ring.rotate(Turn::kUp);  // undoes it
+            CHECK(contents(session, ring.blocks()) == before);
+            ring.rotate(Turn::kUp);  // PE i has what PE i - 1 had
+            CHECK(contents(session, ring.blocks()) == turned(before, pes, pes - 1));
+            CHECK(contents(session, own) == before);
+        }
+}
+
+TEST_CASE("P rotations either way bring every block home", "[ring]") {
+    constexpr std::uint64_t kSeed = 9;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    for (const std::size_t pes : kRings)
+        for (const Turn turn : {Turn::kDown, Turn::kUp}) {
+            CAPTURE(kSeed, pes, int(turn));
+            Communication counted;
+            Ring ring(session, counted, pes, 5);
+            const Bits before = random_words(random, pes * 5);
+            ring.load(filled(session, "own", before), 5, 0);
+            for (std::size_t n = 1; n <= pes; ++n) {
+                ring.rotate(turn);
+                const std::size_t distance = turn == Turn::kDown ? n : pes - n;
+                if (contents(session, ring.blocks()) != turned(before, pes, distance)) FAIL_CHECK("after " << n);
+            }
+            CHECK(contents(session, ring.blocks()) == before);
+        }
+}
+
+TEST_CASE("rotations are counted as the words that were copied", "[ring]") {
+    constexpr std::uint64_t kSeed = 10;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    for (int i = 0; i < 100; ++i) {
+        const std::size_t pes = kRings[i % 5], block = 1 + random_below(random, 40);
+        const std::uint32_t down = random_below(random, 5), up = random_below(random, 5);
+        CAPTURE(kSeed, i, pes, block, down, up);
+        Communication counted;
+        Ring ring(session, counted, pes, block);
+        const Buffer<float> own = filled(session, "own", random_words(random, pes * block));
+        session.clear_profile();
+        ring.load(own, block, 0);
+        CHECK((counted.rotations == 0 && counted.rotation_words == 0));  // a PE's own words stay where they are
+        for (std::uint32_t n = 0; n < down; ++n) ring.rotate(Turn::kDown);
+        for (std::uint32_t n = 0; n < up; ++n) ring.rotate(Turn::kUp);
+        CHECK(counted.rotations == down + up);
+        CHECK(counted.rotation_words == (down + up) * pes * block);
+        CHECK(copied_bytes(session, "ring.rotate") == 4 * counted.rotation_words);
+        CHECK(copied_bytes(session, "ring.rotate_down") == 4 * down * pes * block);
+        CHECK(copied_bytes(session, "ring.load") == 4 * pes * block);
+        CHECK(copied_bytes(session, "") == 4 * (down + up + 1) * pes * block);
+        CHECK(other_commands(session) == 0);
+        CHECK((counted.broadcasts == 0 && counted.gathers == 0));
+    }
+}
+
+TEST_CASE("a band at the end of the share loads the words that are left and keeps the rest", "[ring]") {
+    constexpr std::uint64_t kSeed = 11;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    int shorter = 0;
+    for (int i = 0; i < 200; ++i) {
+        const std::size_t pes = kRings[i % 5], share = 1 + random_below(random, 30);
+        const std::size_t band = 1 + random_below(random, share), begin = random_below(random, share);
+        CAPTURE(kSeed, i, pes, share, band, begin);
+        Communication counted;
+        Ring ring(session, counted, pes, band);
+        const Bits mine = random_words(random, pes * share), stale = random_words(random, pes * band);
+        const Buffer<float> own = filled(session, "own", mine);
+        ring.load(filled(session, "stale", stale), band, 0);
+        ring.load(own, share, begin);
+        Bits expected = stale;
+        const std::size_t count = std::min(band, share - begin);
+        for (std::size_t pe = 0; pe < pes; ++pe)
+            for (std::size_t n = 0; n < count; ++n) expected[pe * band + n] = mine[pe * share + begin + n];
+        CHECK(contents(session, ring.blocks()) == expected);
+        CHECK(contents(session, own) == mine);
+        CHECK(counted.rotations == 0);
+        shorter += count < band;
+    }
+    CHECK(shorter > 20);
+}
+
+TEST_CASE("an exchange brings every band from every distance once, and turns as often as it says", "[ring]") {
+    constexpr std::uint64_t kSeed = 12;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    for (int i = 0; i < 100; ++i) {
+        const raya_mapping m = small_mapping(random, 8);
+        const std::uint32_t capacity = largest_share(m), band = 1 + random_below(random, capacity);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.offset, m.fold, capacity, band);
+        const Bits mine = random_words(random, std::size_t{m.pes} * capacity * 3);
+        const Buffer<float> own = filled(session, "own", mine);
+        Communication counted;
+        NeighbourExchange exchange(session, counted, m, capacity, band);
+        std::uint32_t wrong = 0;
+        for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
+            const std::vector<std::uint32_t> distances = neighbour_distances(m, side);
+            std::vector<std::uint64_t> awaited, came;
+            for (std::uint32_t begin = 0; begin < capacity; begin += band)
+                for (const std::uint32_t d : distances) awaited.push_back(std::uint64_t{begin} << 32 | d);
+            exchange.visit(own, side, [&](const Arrival& arrival) {
+                came.push_back(std::uint64_t{arrival.begin} << 32 | arrival.distance);
+                const Bits blocks = contents(session, arrival.blocks);
+                for (std::size_t pe = 0; pe < m.pes; ++pe)
+                    for (std::size_t n = 0; n < 3 * std::min(band, capacity - arrival.begin); ++n) {
+                        const std::size_t from = (pe + arrival.distance) % m.pes;
+                        wrong += blocks[pe * band * 3 + n] != mine[(from * capacity + arrival.begin) * 3 + n];
+                    }
+            });
+            std::sort(came.begin(), came.end());
+            CHECK(came == awaited);
+        }
+        CHECK(wrong == 0);
+        CHECK(counted.rotations == exchange.rotations());
+        CHECK(counted.rotation_words == counted.rotations * m.pes * band * 3);
+        CHECK(contents(session, own) == mine);
+    }
+}

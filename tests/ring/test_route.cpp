@@ -1,0 +1,197 @@
+// Where the neighbours of a PE's pixels are, and the fewest rotations that bring them.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <vector>
+
+#include "ring/mapping.hpp"
+#include "ring/neighbour_exchange.hpp"
+#include "ring/route.hpp"
+#include "ring/small_mapping.hpp"
+
+using namespace raya;
+
+namespace {
+
+using Distances = std::vector<std::uint32_t>;
+
+/// The image with the number of the PE that lists each pixel in its share.
+std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
+    std::vector<std::uint32_t> owners(std::size_t{m.width} * m.height);
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const raya_share share = raya_share_of(m, pe);
+        for (std::uint32_t k = 0; k < raya_share_size(share); ++k) {
+            const raya_pixel pixel = raya_pixel_of(m, share, k);
+            owners[std::size_t{pixel.row} * m.width + pixel.column] = pe;
+        }
+    }
+    return owners;
+}
+
+/// The distances as the words of route.hpp define them, in signed numbers.
+Distances defined_distances(const raya_mapping& m, raya_u32 side) {
+    const std::vector<std::uint32_t> owners = listed_owners(m);
+    const std::int64_t right = side == RAYA_LEFT ? -1 : side == RAYA_RIGHT ? 1 : 0;
+    const std::int64_t down = side == RAYA_ABOVE ? -1 : side == RAYA_BELOW ? 1 : 0;
+    const std::int64_t width = m.width, height = m.height, pes = m.pes;
+    std::set<std::uint32_t> found;
+    for (std::int64_t j = 0; j < height; ++j)
+        for (std::int64_t x = 0; x < width; ++x) {
+            const std::int64_t row = j + down, column = x + right;
+            if (row < 0 || row >= height || column < 0 || column >= width) continue;
+            const std::int64_t pe = owners[j * width + x], other = owners[row * width + column];
+            found.insert(static_cast<std::uint32_t>((other - pe + pes) % pes));
+        }
+    return {found.begin(), found.end()};
+}
+
+std::uint64_t turns_of(const std::vector<Leg>& route) {
+    return std::accumulate(route.begin(), route.end(), std::uint64_t{0},
+                           [](std::uint64_t sum, const Leg& leg) { return sum + leg.turns(); });
+}
+
+/// The distances at which a route stops, ascending, each as often as it does.
+Distances stops_of(const std::vector<Leg>& route, std::uint32_t pes) {
+    Distances stops;
+    for (const Leg& leg : route)
+        for (const std::uint32_t stop : leg.stops) stops.push_back(leg.turn == Turn::kDown ? stop : (pes - stop) % pes);
+    std::sort(stops.begin(), stops.end());
+    return stops;
+}
+
+/// Legs in their order, none empty, stops in the order in which they are passed, none after a whole round.
+bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
+    if (route.size() > 2) return false;
+    if (route.size() == 2 && (route[0].turn != Turn::kDown || route[1].turn != Turn::kUp)) return false;
+    return std::all_of(route.begin(), route.end(), [&](const Leg& leg) {
+        return !leg.stops.empty() && leg.turns() < pes &&
+               std::adjacent_find(leg.stops.begin(), leg.stops.end(), std::greater_equal<>()) == leg.stops.end();
+    });
+}
+
+/// The fewest turns of any walk over the ring that sees all `wanted` (a bit for each distance): a turn either way costs
+/// one, to begin again with the PEs' own blocks costs none. Breadth first over (distance, seen).
+int fewest_turns(std::uint32_t pes, std::uint32_t wanted) {
+    constexpr int kFar = std::numeric_limits<int>::max();
+    const std::uint32_t all = 1u << pes;
+    std::vector<int> turns(std::size_t{pes} * all, kFar);
+    std::deque<std::uint32_t> next;  // distance * all + seen
+    const auto reach = [&](std::uint32_t distance, std::uint32_t seen, int cost, bool costs_nothing) {
+        const std::uint32_t state = distance * all + (seen | 1u << distance);
+        if (cost >= turns[state]) return;
+        turns[state] = cost;
+        costs_nothing ? next.push_front(state) : next.push_back(state);
+    };
+    reach(0, 0, 0, true);
+    while (!next.empty()) {
+        const std::uint32_t state = next.front(), distance = state / all, seen = state % all;
+        next.pop_front();
+        if ((seen & wanted) == wanted) return turns[state];
+        reach(0, seen, turns[state], true);
+        reach((distance + 1) % pes, seen, turns[state] + 1, false);
+        reach((distance + pes - 1) % pes, seen, turns[state] + 1, false);
+    }
+    return kFar;
+}
+
+/// A walk that need not pass the widest gap between 0 and the distances passes all else.
+std::uint32_t turns_round_widest_gap(std::uint32_t pes, Distances stops) {
+    stops.push_back(0);
+    std::sort(stops.begin(), stops.end());
+    stops.push_back(pes);
+    std::uint32_t widest = 0;
+    for (std::size_t i = 1; i < stops.size(); ++i) widest = std::max(widest, stops[i] - stops[i - 1]);
+    return pes - widest;
+}
+
+std::uint64_t exchange_rotations(const raya_mapping& m, std::uint32_t capacity, std::uint32_t band) {
+    Session session(choose_device(""));
+    Communication counted;
+    return NeighbourExchange(session, counted, m, capacity, band).rotations();
+}
+
+}  // namespace
+
+TEST_CASE("the distances are those of the pixels' neighbours", "[ring][route]") {
+    constexpr std::uint64_t kSeed = 5;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 600; ++i) {
+        const raya_mapping m = small_mapping(random, 14);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.offset, m.fold);
+        for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
+            CAPTURE(side);
+            CHECK(neighbour_distances(m, side) == defined_distances(m, side));
+        }
+    }
+}
+
+TEST_CASE("where a PE owns whole columns there is one distance a side, the paper's", "[ring][route]") {
+    constexpr std::uint64_t kSeed = 6;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 300; ++i) {
+        raya_mapping m = small_mapping(random, 30);
+        m.pes = m.width;
+        const std::uint32_t pes = m.pes, p = m.offset;
+        CAPTURE(kSeed, i, m.width, m.height, p, m.fold);
+        const bool beside = m.width > 1, over = m.height > 1;
+        CHECK(neighbour_distances(m, RAYA_LEFT) == (beside ? Distances{pes - 1} : Distances{}));
+        CHECK(neighbour_distances(m, RAYA_RIGHT) == (beside ? Distances{1} : Distances{}));
+        CHECK(neighbour_distances(m, RAYA_ABOVE) == (over ? Distances{p} : Distances{}));
+        CHECK(neighbour_distances(m, RAYA_BELOW) == (over ? Distances{(pes - p) % pes} : Distances{}));
+    }
+}
+
+TEST_CASE("no walk over the ring sees all distances with fewer turns: every set on up to nine PEs", "[ring][route]") {
+    for (std::uint32_t pes = 1; pes <= 9; ++pes)
+        for (std::uint32_t wanted = 0; wanted < 1u << pes; ++wanted) {
+            Distances distances;
+            for (std::uint32_t d = 0; d < pes; ++d)
+                if (wanted >> d & 1u) distances.push_back(d);
+            const std::vector<Leg> route = shortest_route(pes, distances);
+            const bool good = well_formed(route, pes) && stops_of(route, pes) == distances &&
+                              turns_of(route) == static_cast<std::uint64_t>(fewest_turns(pes, wanted));
+            if (good) continue;
+            CAPTURE(pes, distances, turns_of(route), fewest_turns(pes, wanted), stops_of(route, pes));
+            CHECK(good);
+        }
+    CHECK(fewest_turns(9, 0b000101001) == 5);  // the walk that judges: 3 and 5 are down 5 away, up 6 ...
+    CHECK(fewest_turns(9, 0b100000010) == 2);  // ... and 1 and 8 are one turn away either way
+}
+
+TEST_CASE("a route leaves out the widest gap of a large ring", "[ring][route]") {
+    constexpr std::uint64_t kSeed = 7;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 500; ++i) {
+        const std::uint32_t pes = 1 + random_below(random, 2000);
+        std::set<std::uint32_t> chosen;
+        for (std::uint32_t n = random_below(random, 12); n > 0; --n) chosen.insert(random_below(random, pes));
+        const Distances distances(chosen.begin(), chosen.end());
+        const std::vector<Leg> route = shortest_route(pes, distances);
+        CAPTURE(kSeed, i, pes, distances);
+        CHECK(well_formed(route, pes));
+        CHECK(stops_of(route, pes) == distances);
+        CHECK(turns_of(route) == turns_round_widest_gap(pes, distances));
+    }
+}
+
+TEST_CASE("four sides take 2 (min(p, P - p) + 1) rotations where a PE owns whole columns", "[ring][route]") {
+    for (const std::uint32_t p : {0u, 8u, 16u}) {  // the paper's image and array: 2, 18, 34
+        CAPTURE(p);
+        CHECK(exchange_rotations({256, 256, 256, p, RAYA_FOLD_CYCLIC}, 256, 256) == 2 * p + 2);
+    }
+    for (const std::uint32_t pes : {2u, 3u, 24u})
+        for (std::uint32_t p = 0; p < pes; ++p) {
+            CAPTURE(pes, p);
+            const raya_mapping m{pes, 20, pes, p, RAYA_FOLD_CYCLIC};
+            const std::uint64_t rotations = 2 * (std::min(p, pes - p) + 1);
+            CHECK(exchange_rotations(m, 20, 20) == rotations);
+            CHECK(exchange_rotations(m, 20, 10) == 2 * rotations);  // a round for each band,
+            CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // the last of which may be shorter
+        }
+    CHECK(exchange_rotations({6, 4, 1, 3, RAYA_FOLD_BLOCK}, 24, 5) == 0);  // one PE has all neighbours itself
+}

@@ -1,0 +1,119 @@
+// Anti-aliasing as plain functions of whole images, for tests: no PE, no mapping, no block, no rotation.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "image/image.hpp"
+#include "machine/number_format.hpp"
+
+namespace raya::whole_image {
+
+/// Arithmetic of a format: each operation in double, then rounded to the format. The two roundings are the one of the
+/// machine: to add, subtract or divide numbers of p bits, a detour through 2 p + 2 bits or more changes nothing
+/// (S. Figueroa, "When is double rounding innocuous?", 1995), and 53 >= 2 * 24 + 2. Not so for formats that truncate.
+class Arithmetic {
+  public:
+    explicit Arithmetic(const NumberFormat& format) : format_(format) {}
+
+    float round(double value) const {
+        return format_.is_fp32() ? static_cast<float>(value) : round_to_format(value, format_);
+    }
+    float add(double a, double b) const { return round(a + b); }
+    float subtract(double a, double b) const { return round(a - b); }
+    float divide(double a, double b) const { return round(a / b); }
+
+  private:
+    NumberFormat format_;
+};
+
+inline float value_at(const Image& image, int row, int column, int colour) {
+    return image.rgb[3 * (std::size_t(row) * std::size_t(image.width) + std::size_t(column)) + std::size_t(colour)];
+}
+
+inline bool inside(const Image& image, int row, int column) {
+    return row >= 0 && row < image.height && column >= 0 && column < image.width;
+}
+
+/// The image of `value(row, column, colour)`.
+template <class Value>
+Image make_image(int width, int height, Value&& value) {
+    Image image{width, height, {}};
+    for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column)
+            for (int colour = 0; colour < 3; ++colour) image.rgb.push_back(value(row, column, colour));
+    return image;
+}
+
+/// (own + the pixel (-down, -right) away) + the pixel (down, right) away; what lies outside of the image is left out.
+inline Image line_sums(const Image& image, int down, int right, const Arithmetic& in) {
+    return make_image(image.width, image.height, [&](int row, int column, int colour) {
+        float sum = value_at(image, row, column, colour);
+        for (const int way : {-1, 1})
+            if (inside(image, row + way * down, column + way * right))
+                sum = in.add(sum, value_at(image, row + way * down, column + way * right, colour));
+        return sum;
+    });
+}
+
+/// The mean of each pixel's 3 x 3 neighbourhood, of as much of it as there is: sums along rows, then along columns.
+inline Image filtered(const Image& image, const NumberFormat& format) {
+    const Arithmetic in(format);
+    const Image sums = line_sums(line_sums(image, 0, 1, in), 1, 0, in);
+    return make_image(image.width, image.height, [&](int row, int column, int colour) {
+        int pixels = 0;
+        for (int down = -1; down <= 1; ++down)
+            for (int right = -1; right <= 1; ++right) pixels += inside(image, row + down, column + right);
+        return in.divide(value_at(sums, row, column, colour), pixels);
+    });
+}
+
+/// True where a colour of the two pixels, clamped to 0..1, differs by `threshold`, a number of the format, or more.
+inline bool differ(const Image& image, int row, int column, int other_row, int other_column, float threshold,
+                   const Arithmetic& in) {
+    const auto clamped = [&](int j, int x, int colour) {
+        return std::clamp(value_at(image, j, x, colour), 0.0f, 1.0f);
+    };
+    bool found = false;
+    for (int colour = 0; colour < 3; ++colour) {
+        const float own = clamped(row, column, colour), other = clamped(other_row, other_column, colour);
+        found = found || std::abs(in.subtract(own, other)) >= threshold;
+    }
+    return found;
+}
+
+/// 1 in the pixels that differ from the one on the left, right, above or below, else 0.
+inline Image contrast_mask(const Image& image, double threshold, const NumberFormat& format) {
+    const Arithmetic in(format);
+    const float rounded = in.round(threshold);
+    return make_image(image.width, image.height, [&](int row, int column, int) {
+        constexpr std::array<std::array<int, 2>, 4> kSides = {{{0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
+        return float(std::any_of(kSides.begin(), kSides.end(), [&](const auto& side) {
+            const int beside = row + side[0], across = column + side[1];
+            return inside(image, beside, across) && differ(image, row, column, beside, across, rounded, in);
+        }));
+    });
+}
+
+/// The mean of a pixel's own value and of its four new points.
+inline float mean_of_five(const std::array<float, 5>& values, const NumberFormat& format) {
+    const Arithmetic in(format);
+    float sum = values[0];
+    for (std::size_t i = 1; i < values.size(); ++i) sum = in.add(sum, values[i]);
+    return in.divide(sum, 5);
+}
+
+/// Values that are not the same bits; all of them where the sizes differ.
+inline std::size_t unlike_values(const Image& a, const Image& b) {
+    if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size())
+        return std::max(a.rgb.size(), b.rgb.size());
+    std::size_t unlike = 0;
+    for (std::size_t i = 0; i < a.rgb.size(); ++i)
+        unlike += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
+    return unlike;
+}
+
+}  // namespace raya::whole_image
