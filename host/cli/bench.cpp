@@ -143,6 +143,8 @@ void bench(BenchCommand command) {
                             ? parse_nff(embedded_files().at("scenes/spheres.nff"), "scenes/spheres.nff")
                             : read_nff(command.render.scene);
     const RingSettings settings = ring_settings(command.render, scene);
+    if (settings.antialias.method != AntialiasMethod::kNone)
+        throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
     Session session(choose_device(command.render.device));
     std::vector<BenchRow> rows;
     for (const NumberFormat& format : formats)

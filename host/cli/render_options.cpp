@@ -54,7 +54,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         .add_option("--points", o.points,
                     "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
         ->type_name("axes|diagonals")
-        ->capture_default_str();
+        ->default_str("axes");
     command
         .add_option("--device", o.device,
                     "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
@@ -77,10 +77,10 @@ namespace {
 Antialias antialias_settings(const RenderOptions& o) {
     Antialias antialias;
     antialias.method = parse_antialias(o.antialias);
-    antialias.points = parse_points(o.points);
-    if (antialias.method != AntialiasMethod::kSupersample && (o.threshold || o.points != "axes"))
+    antialias.points = parse_points(o.points.empty() ? "axes" : o.points);
+    if (antialias.method != AntialiasMethod::kSupersample && (o.threshold || !o.points.empty()))
         throw UserError("--threshold and --points say how to supersample: give --antialias supersample as well");
-    antialias.threshold = o.threshold.value_or(antialias.threshold);
+    antialias.threshold = o.threshold.value_or(antialias.threshold) + 0.0;  // -0 is 0
     if (!(antialias.threshold >= 0 && antialias.threshold <= 1))
         throw UserError(fmt::format("--threshold {}: must be 0..1", antialias.threshold));
     return antialias;

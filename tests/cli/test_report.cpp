@@ -6,29 +6,13 @@
 #include <set>
 
 #include "cli/render_files.hpp"
+#include "cli/report_keys.hpp"
 #include "image/image_io.hpp"
 #include "scene/nff_reader.hpp"
 
 namespace raya {
 namespace {
 using Json = nlohmann::json;
-
-/// "path type" of everything below `json`; all elements of an array share one path.
-void list_keys(const Json& json, const std::string& path, std::set<std::string>& keys) {
-    if (!json.is_structured()) {
-        const bool whole = json.is_number_unsigned();
-        keys.insert(path + (whole ? " count" : std::string(" ") + json.type_name()));
-        return;
-    }
-    for (const auto& [key, value] : json.items())
-        list_keys(value, json.is_array() ? path + "[]" : path.empty() ? key : path + "." + key, keys);
-}
-
-std::set<std::string> keys_of(const Json& report) {
-    std::set<std::string> keys;
-    list_keys(report, "", keys);
-    return keys;
-}
 
 void check_rays_and_tests(const Json& report, const Scene& scene) {
     const Json &rays = report["rays"], &tests = report["tests"], &shading = report["shading"];
@@ -100,68 +84,9 @@ void check_measured(const Json& report) {
     for (const char* label : {"bus.broadcast", "trace", "bus.gather"}) CHECK(labels.count(label) == 1);
 }
 
-/// The fixed keys, as list_keys() gives them; `shading` is beyond those that were promised.
-const std::set<std::string> kKeys = {"scene string",
-                                     "image.width count",
-                                     "image.height count",
-                                     "image.file string",
-                                     "image.hash string",
-                                     "machine.name string",
-                                     "machine.topology string",
-                                     "machine.pes count",
-                                     "machine.mapping string",
-                                     "machine.offset count",
-                                     "machine.fold string",
-                                     "machine.format string",
-                                     "machine.bounces count",
-                                     "machine.pe_memory_bytes count",
-                                     "machine.pe_memory_used_bytes count",
-                                     "device.name string",
-                                     "device.platform string",
-                                     "device.version string",
-                                     "device.lanes count",
-                                     "device.group_size count",
-                                     "device.build_options string",
-                                     "rays.primary count",
-                                     "rays.primary_hits count",
-                                     "rays.reflected count",
-                                     "rays.refracted count",
-                                     "rays.shadow count",
-                                     "rays.shadow_hits count",
-                                     "tests.sphere count",
-                                     "tests.plane count",
-                                     "tests.polygon count",
-                                     "tests.cone count",
-                                     "shading.hits count",
-                                     "shading.lit count",
-                                     "shading.highlights count",
-                                     "load.unit string",
-                                     "load.mean number",
-                                     "load.max count",
-                                     "load.min count",
-                                     "load.imbalance number",
-                                     "load.speedup number",
-                                     "load.efficiency number",
-                                     "load.per_pe[] count",
-                                     "communication.broadcasts count",
-                                     "communication.broadcast_words count",
-                                     "communication.rotations count",
-                                     "communication.rotation_words count",
-                                     "communication.gathers count",
-                                     "communication.gather_words count",
-                                     "measured.build_s number",
-                                     "measured.render_s number",
-                                     "measured.commands[].label string",
-                                     "measured.commands[].kind string",
-                                     "measured.commands[].launches count",
-                                     "measured.commands[].total_ns count",
-                                     "measured.commands[].min_ns count",
-                                     "measured.commands[].mean_ns number",
-                                     "measured.commands[].max_ns count"};
-
 TEST_CASE("the report has its fixed keys, each of its type", "[cli]") {
-    CHECK(keys_of(RenderFiles("planes").report()) == kKeys);
-    std::set<std::string> without_limit = kKeys;
+    CHECK(keys_of(RenderFiles("planes").report()) == fixed_keys());
+    std::set<std::string> without_limit = fixed_keys();
     without_limit.erase("machine.pe_memory_bytes count");
     without_limit.insert("machine.pe_memory_bytes null");
     CHECK(keys_of(RenderFiles("planes", {"--machine", "grande"}).report()) == without_limit);

@@ -256,6 +256,7 @@ TEST_CASE("a difference equal to the threshold counts, one beyond 0..1 does not"
     CHECK(recomputed(0.25, 0.375, 0.125, 1) == outline);
     CHECK(recomputed(0.375, 0.25, 0.125, 2) == outline);
     CHECK(recomputed(0.25, 0.375, 0.125 * (1 + last_place), 0) == 0);
+    CHECK(recomputed(0.25, 0.375, 0.125 * (1 + last_place / 4), 0) == outline);  // a threshold is rounded to the format
     CHECK(recomputed(0.25, 0.375 - 0.25 * last_place, 0.125, 2) == 0);
     CHECK(recomputed(-7, 0, 0.125, 1) == 0);
     CHECK(recomputed(1, 9, 0.125, 0) == 0);

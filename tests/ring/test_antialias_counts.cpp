@@ -97,9 +97,11 @@ TEST_CASE("lanes and group size change no bit, mark or count of anti-aliasing", 
             std::vector<Answer> answers;
             for (const auto& [lanes, group] : choices) {
                 const RingCase c{.lanes = lanes, .group = group, .format = format, .antialias = antialias};
-                answers.push_back(answer_of(render_case(session, c)));
+                const RingResult result = render_case(session, c);
+                answers.push_back(answer_of(result));
                 CAPTURE(format, antialias_name(antialias.method), lanes, group);
                 CHECK(answers.back() == answers.front());
+                for (const Phase& phase : result.phases) check_phase(phase, settings_of(c).mapping);
             }
         }
 }

@@ -1,0 +1,92 @@
+// The keys of a report, as tests compare them.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+namespace raya {
+
+/// Adds "path type" of everything below `json`; all elements of an array share one path.
+inline void list_keys(const nlohmann::json& json, const std::string& path, std::set<std::string>& keys) {
+    if (!json.is_structured()) {
+        const bool whole = json.is_number_unsigned();
+        keys.insert(path + (whole ? " count" : std::string(" ") + json.type_name()));
+        return;
+    }
+    for (const auto& [key, value] : json.items())
+        list_keys(value, json.is_array() ? path + "[]" : path.empty() ? key : path + "." + key, keys);
+}
+
+inline std::set<std::string> keys_of(const nlohmann::json& report) {
+    std::set<std::string> keys;
+    list_keys(report, "", keys);
+    return keys;
+}
+
+/// The keys of a load, each behind `path`.
+inline std::set<std::string> load_keys(const std::string& path) {
+    std::set<std::string> keys;
+    for (const char* key : {"unit string", "mean number", "max count", "min count", "imbalance number",
+                            "speedup number", "efficiency number", "per_pe[] count"})
+        keys.insert(path + key);
+    return keys;
+}
+
+/// The keys of every report, as keys_of() gives them; `shading` is beyond those that were promised.
+inline std::set<std::string> fixed_keys() {
+    std::set<std::string> keys = {"scene string",
+                                  "image.width count",
+                                  "image.height count",
+                                  "image.file string",
+                                  "image.hash string",
+                                  "machine.name string",
+                                  "machine.topology string",
+                                  "machine.pes count",
+                                  "machine.mapping string",
+                                  "machine.offset count",
+                                  "machine.fold string",
+                                  "machine.format string",
+                                  "machine.bounces count",
+                                  "machine.pe_memory_bytes count",
+                                  "machine.pe_memory_used_bytes count",
+                                  "device.name string",
+                                  "device.platform string",
+                                  "device.version string",
+                                  "device.lanes count",
+                                  "device.group_size count",
+                                  "device.build_options string",
+                                  "rays.primary count",
+                                  "rays.primary_hits count",
+                                  "rays.reflected count",
+                                  "rays.refracted count",
+                                  "rays.shadow count",
+                                  "rays.shadow_hits count",
+                                  "tests.sphere count",
+                                  "tests.plane count",
+                                  "tests.polygon count",
+                                  "tests.cone count",
+                                  "shading.hits count",
+                                  "shading.lit count",
+                                  "shading.highlights count",
+                                  "antialias.method string",
+                                  "communication.broadcasts count",
+                                  "communication.broadcast_words count",
+                                  "communication.rotations count",
+                                  "communication.rotation_words count",
+                                  "communication.gathers count",
+                                  "communication.gather_words count",
+                                  "measured.build_s number",
+                                  "measured.render_s number",
+                                  "measured.commands[].label string",
+                                  "measured.commands[].kind string",
+                                  "measured.commands[].launches count",
+                                  "measured.commands[].total_ns count",
+                                  "measured.commands[].min_ns count",
+                                  "measured.commands[].mean_ns number",
+                                  "measured.commands[].max_ns count"};
+    keys.merge(load_keys("load."));
+    keys.merge(load_keys("load.trace."));
+    return keys;
+}
+
+}  // namespace raya

@@ -1,0 +1,190 @@
+// Anti-aliasing from the command line: what the report says about it, the image of the mask, and what is refused.
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "cli/refusals.hpp"
+#include "cli/render_files.hpp"
+#include "cli/report_keys.hpp"
+#include "image/image_io.hpp"
+
+namespace raya {
+namespace {
+using Json = nlohmann::json;
+using Loads = std::vector<std::uint64_t>;
+
+constexpr std::uint64_t kPixels = kTestWidth * kTestHeight;
+
+Words supersample(const Words& more = {}) {
+    Words options = {"--antialias", "supersample"};
+    options.insert(options.end(), more.begin(), more.end());
+    return options;
+}
+
+Loads sum_of(Loads a, const Loads& b) {
+    REQUIRE(a.size() == b.size());
+    std::transform(a.begin(), a.end(), b.begin(), a.begin(), std::plus<>());
+    return a;
+}
+
+/// Launches of the commands with this label.
+std::uint64_t launches_of(const Json& report, const std::string& label) {
+    std::uint64_t launches = 0;
+    for (const Json& command : report["measured"]["commands"])
+        if (command["label"] == label) launches += command["launches"].get<std::uint64_t>();
+    return launches;
+}
+
+/// A rotation is two copies: all blocks but one, and that one from end to end.
+void check_rotations(const Json& report) {
+    const Json& ring = report["communication"];
+    const std::uint64_t rotations = ring["rotations"], pes = report["machine"]["pes"],
+                        band = report["antialias"]["band_pixels"];
+    CHECK(rotations > 0);
+    CHECK(ring["rotation_words"] == rotations * pes * 3 * band);
+    CHECK(launches_of(report, "ring.rotate_up") + launches_of(report, "ring.rotate_down") == 2 * rotations);
+}
+
+TEST_CASE("the report of an anti-aliased render has keys of its own", "[cli]") {
+    std::set<std::string> keys = fixed_keys();
+    keys.insert("antialias.band_pixels count");
+    CHECK(keys_of(RenderFiles("planes", {"--antialias", "filter"}).report()) == keys);
+    keys.insert({"antialias.threshold number", "antialias.points string", "antialias.recomputed_pixels count",
+                 "antialias.recomputed_share number"});
+    keys.merge(load_keys("load.supersample."));
+    CHECK(keys_of(RenderFiles("planes", supersample()).report()) == keys);
+}
+
+TEST_CASE("without anti-aliasing the report says so", "[cli]") {
+    const RenderFiles files("planes", {"--antialias", "none"});
+    const Json report = files.report();
+    CHECK(report["antialias"] == Json{{"method", "none"}});
+    CHECK(report["load"]["trace"]["per_pe"] == report["load"]["per_pe"]);
+    CHECK(report["communication"]["rotations"] == 0);
+    CHECK_FALSE(contains(files.run().out, "ring "));
+    CHECK(report["image"]["hash"] == RenderFiles("planes").report()["image"]["hash"]);
+}
+
+TEST_CASE("the report of a filtered render adds up", "[cli]") {
+    const RenderFiles files("planes", {"--antialias", "filter", "--offset", "3"});
+    const Json report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
+    CHECK(report["antialias"] == Json{{"method", "filter"}, {"band_pixels", kTestHeight}});
+    CHECK(report["communication"]["rotations"] == 2 + 2 * 3);  // a column for each PE: 1 PE aside, 3 PEs up and down
+    check_rotations(report);
+    for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain[part]);
+    CHECK(report["image"]["hash"] != plain["image"]["hash"]);
+    CHECK(report["machine"]["pe_memory_used_bytes"] ==
+          plain["machine"]["pe_memory_used_bytes"].get<int>() + 2 * 12 * kTestHeight);  // sums, and a block in passing
+    for (const char* label : {"filter.sum_rows", "filter.sum_columns"}) CHECK(launches_of(report, label) == 2);
+    CHECK(launches_of(report, "filter.take_means") == 1);
+    CHECK_THAT(files.run().out, Catch::Contains("ring    8 rotations, " + std::to_string(8 * 20 * 3 * 12) + " words"));
+}
+
+TEST_CASE("the report of a supersampled render adds up", "[cli]") {
+    const RenderFiles files("planes", supersample({"--offset", "3"}));
+    const Json report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
+    const Json &antialias = report["antialias"], &load = report["load"];
+    const std::uint64_t recomputed = antialias["recomputed_pixels"];
+    CHECK(antialias["method"] == "supersample");
+    CHECK(antialias["threshold"] == 0.125);
+    CHECK(antialias["points"] == "axes");
+    CHECK(antialias["band_pixels"] == kTestHeight);
+    CHECK(recomputed > kPixels / 20);
+    CHECK(recomputed < kPixels);
+    CHECK(antialias["recomputed_share"] == double(recomputed) / double(kPixels));
+    CHECK(report["rays"]["primary"] == kPixels + 4 * recomputed);
+    CHECK(load["trace"] == plain["load"]["trace"]);
+    CHECK(load["per_pe"].get<Loads>() ==
+          sum_of(load["trace"]["per_pe"].get<Loads>(), load["supersample"]["per_pe"].get<Loads>()));
+    CHECK(report["communication"]["rotations"] == 2 + 2 * 3);
+    check_rotations(report);
+    CHECK(launches_of(report, "supersample.compare") == 4);
+    CHECK(launches_of(report, "supersample") >= 1);
+    CHECK_THAT(files.run().out,
+               Catch::Contains("super   " + std::to_string(recomputed) + " pixels (") && Catch::Contains("super u = "));
+}
+
+TEST_CASE("threshold and points of supersampling do what they say", "[cli]") {
+    const Json all = RenderFiles("planes", supersample({"--threshold", "0"})).report();
+    CHECK(all["antialias"]["threshold"] == 0.0);
+    CHECK(all["antialias"]["recomputed_pixels"] == kPixels);
+    CHECK(all["antialias"]["recomputed_share"] == 1.0);
+    const Json axes = RenderFiles("planes", supersample()).report();
+    const Json coarse = RenderFiles("planes", supersample({"--threshold", "0.5"})).report();
+    CHECK(coarse["antialias"]["threshold"] == 0.5);
+    CHECK(coarse["antialias"]["recomputed_pixels"] < axes["antialias"]["recomputed_pixels"]);
+    const Json diagonals = RenderFiles("planes", supersample({"--points", "diagonals"})).report();
+    CHECK(diagonals["antialias"]["points"] == "diagonals");
+    CHECK(diagonals["antialias"]["recomputed_pixels"] == axes["antialias"]["recomputed_pixels"]);
+    CHECK(diagonals["image"]["hash"] != axes["image"]["hash"]);
+}
+
+TEST_CASE("the mask is white where pixels were supersampled and black elsewhere", "[cli]") {
+    const std::string extension = GENERATE(".png", ".exr", ".pfm");
+    const ScratchFolder folder;
+    const std::string mask_file = folder / ("mask" + extension);
+    const Json antialias = RenderFiles("planes", supersample({"--mask", mask_file})).report()["antialias"];
+    const Image mask = read_image(mask_file);
+    CAPTURE(extension);
+    CHECK(folder.entries() == 1);
+    REQUIRE(mask.width == kTestWidth);
+    REQUIRE(mask.height == kTestHeight);
+    std::uint64_t white = 0, neither = 0;
+    for (std::size_t i = 0; i < mask.rgb.size(); i += 3) {
+        const std::array<float, 3> pixel = {mask.rgb[i], mask.rgb[i + 1], mask.rgb[i + 2]};
+        white += pixel == std::array<float, 3>{1, 1, 1};
+        neither += pixel != std::array<float, 3>{1, 1, 1} && pixel != std::array<float, 3>{0, 0, 0};
+    }
+    CHECK(neither == 0);
+    CHECK(white == antialias["recomputed_pixels"]);
+    CHECK(double(white) / double(kPixels) == antialias["recomputed_share"]);
+}
+
+TEST_CASE("options of supersampling are refused out of range and without it", "[cli]") {
+    const ScratchFolder outputs;
+    const auto refused = [&](const Words& options, const Words& message) {
+        check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
+    };
+    refused({"--antialias", "blur"}, {"--antialias blur", "none, filter or supersample"});
+    refused({"--antialias", ""}, {"--antialias", "must not be empty"});
+    refused(supersample({"--points", "corners"}), {"--points corners", "axes or diagonals"});
+    for (const std::string value : {"-0.1", "1.001", "nan", "inf"})
+        refused(supersample({"--threshold", value}), {"--threshold", "must be 0..1"});
+    refused(supersample({"--threshold", "0.125x"}), {"--threshold", "0.125x", "--help"});
+    for (const Words& option : {Words{"--threshold", "0.125"}, Words{"--points", "diagonals"},
+                                Words{"--points", "axes"}, Words{"--mask", outputs / "mask.png"}})
+        for (const std::string method : {"none", "filter"}) {
+            Words options = {"--antialias", method};
+            options.insert(options.end(), option.begin(), option.end());
+            refused(options, {option[0], "give --antialias supersample"});
+        }
+}
+
+TEST_CASE("a mask that cannot be written is refused before anything is rendered", "[cli]") {
+    const ScratchFolder outputs;
+    const auto refused = [&](const std::string& mask, const Words& message) {
+        check_refused(outputs, render_into(outputs, scene_file("planes"), supersample({"--mask", mask})), 2, message);
+    };
+    for (const char* other : {"x.json", "./x.png"}) refused(outputs / other, {other, "named twice"});
+    refused(scene_file("planes"), {"planes.nff", "named twice"});
+    refused("", {"--mask", "must not be empty"});
+    refused(outputs / "mask.jpg", {"mask.jpg", ".png, .exr, .pfm"});
+    refused(outputs / "missing/mask.png", {"/missing' does not exist", "mkdir -p"});
+}
+
+TEST_CASE("anti-aliasing that a PE has no room for is refused with both figures", "[cli]") {
+    const ScratchFolder outputs;
+    const auto refused = [&](const Words& options, const Words& message) {
+        check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
+    };
+    // 24 bytes a pixel for the filter, 13 for supersampling, and those of the broadcast words
+    refused({"--antialias", "filter", "--size", "256", "--pes", "1"},
+            {"planes.nff with --antialias filter", "needs 153", " KB in every PE", "the SPA has 32 KB", "more PEs",
+             "--machine grande"});
+    refused(supersample({"--size", "256", "--pes", "1"}),
+            {"planes.nff with --antialias supersample", "needs 83", " KB in every PE", "the SPA has 32 KB", "more PEs",
+             "--machine grande"});
+}
+
+}  // namespace
+}  // namespace raya
