@@ -12,9 +12,11 @@
 #include "cli/render_options.hpp"
 #include "error.hpp"
 #include "image/image_io.hpp"
+#include "machine/budget.hpp"
 #include "report/progress.hpp"
 #include "report/render_report.hpp"
 #include "report/whole_file.hpp"
+#include "ring/mapping.hpp"
 #include "scene/nff_reader.hpp"
 
 namespace raya {
@@ -64,39 +66,65 @@ std::optional<Antialiasing> antialiasing(const RingSettings& settings, const Rin
     return report;
 }
 
+std::optional<ModelledTime> modelled(const RingSettings& settings, const RingResult& result) {
+    std::vector<Load> loads;
+    for (const Phase& phase : result.phases) loads.push_back(phase.load);
+    const std::uint32_t share = largest_share(settings.mapping);
+    SmoothingCycles smoothing;
+    if (settings.antialias.method == AntialiasMethod::kFilter) smoothing.filter = filter_cycles(share);
+    if (settings.antialias.method == AntialiasMethod::kSupersample) smoothing.compare = compare_cycles(share);
+    return modelled_time(settings.machine, loads, result.communication, 1, smoothing);
+}
+
 RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device,
                          const RingResult& result) {
     RenderReport report;
     report.scene = command.render.scene;
     report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
-    report.machine = {settings.machine.name,
-                      settings.machine.topology,
-                      command.render.mapping,
-                      command.render.fold,
-                      format_name(settings.format),
-                      settings.mapping.pes,
-                      settings.mapping.offset,
-                      settings.bounces,
-                      settings.machine.pe_memory_bytes.value_or(0),
-                      result.pe_memory.bytes()};
+    report.machine = {.name = settings.machine.name,
+                      .topology = settings.machine.topology,
+                      .mapping = mapping_text(settings.mapping),
+                      .fold = {},
+                      .format = format_name(settings.format),
+                      .pes = settings.mapping.pes,
+                      .offset = {},
+                      .bounces = settings.bounces,
+                      .pe_memory_bytes = settings.machine.pe_memory_bytes.value_or(0),
+                      .pe_memory_used_bytes = result.pe_memory.bytes()};
+    if (settings.dynamic) {
+        report.machine.mapping = dynamic_text(*settings.dynamic);
+    } else if (raya_has_slots(settings.mapping)) {
+        const bool column = command.render.mapping == "column";
+        report.machine.mapping = column ? "column" : "cyclic";
+        report.machine.fold = settings.mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic";
+        report.machine.offset = settings.mapping.parameter;
+    }
     report.device = {device.name,          device.platform, device.version,
                      result.build_options, result.lanes,    result.group_size};
     report.events = result.all.events;
     report.load = result.all.load;
+    report.requests = result.requests;
     for (const Phase& phase : result.phases) report.loads.emplace_back(phase.name, phase.load);
     report.antialias = antialiasing(settings, result);
     report.communication = result.communication;
+    report.modelled = modelled(settings, result);
     report.measured = {result.build_s, result.render_s, result.commands};
     return report;
 }
 
+// Floats hold whole numbers up to 2^24; beyond, the file has the nearest they hold.
+GreyImage grey(const CostImage& cost) {
+    return {static_cast<int>(cost.width), static_cast<int>(cost.height), {cost.cycles.begin(), cost.cycles.end()}};
+}
+
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene) {
-    return {{"scene", scene},
-            {"machine", report.machine.name},
-            {"mapping", report.machine.mapping},
-            {"offset", std::to_string(report.machine.offset)},
-            {"format", report.machine.format},
-            {"u", fmt::format("{:.6f}", report.load.imbalance)}};
+    ImageAttributes attributes = {{"scene", scene},
+                                  {"machine", report.machine.name},
+                                  {"mapping", report.machine.mapping},
+                                  {"format", report.machine.format},
+                                  {"u", fmt::format("{:.6f}", report.load.imbalance)}};
+    if (report.machine.offset) attributes.emplace_back("offset", std::to_string(*report.machine.offset));
+    return attributes;
 }
 
 void render(const RenderCommand& command) {
@@ -110,7 +138,7 @@ void render(const RenderCommand& command) {
     const RenderReport report = make_report(command, settings, session.device(), result);
     const ImageAttributes attributes = image_attributes(report, scene.name);
     write_image(command.image, result.image, attributes);
-    if (!command.cost.empty()) write_image(command.cost, result.all.cost, attributes);
+    if (!command.cost.empty()) write_image(command.cost, grey(result.all.cost), attributes);
     if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
     if (!command.report.empty()) write_whole_file(command.report, to_json(report).dump(2) + "\n");
     if (!command.quiet) fmt::print("{}", human_summary(report));

@@ -12,26 +12,36 @@ namespace raya {
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
     command
-        .add_option("--machine", o.machine,
-                    "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit")
+        .add_option(
+            "--machine", o.machine,
+            "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
+            "cap (256 PEs), pixel-machine (64), links (256): those machines' arrays, on PEs of spa")
         ->type_name("NAME")
         ->capture_default_str();
     command.add_option("--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
         ->type_name("N|WxH");
-    command.add_option("--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's")->type_name("P");
+    command.add_option("--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's, or A*B of a grid")
+        ->type_name("P");
     command
         .add_option("--offset", o.offset, "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W)")
         ->type_name("p");
-    command.add_option("--mapping", o.mapping, "cyclic, or column: the column split, offset 0")
-        ->type_name("NAME")
-        ->capture_default_str();
+    command
+        .add_option(
+            "--mapping", o.mapping,
+            "Which PE owns which pixel: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
+            "split, offset 0), rows (scan lines in turn), blocks (contiguous scan lines), grid:AxB (A rows of B "
+            "PEs: every A-th line, every B-th pixel of it), tiles:WxH (tiles of W x H pixels in turn), "
+            "random:seed (random: seed 1); dynamic:CHUNK[,OVERHEAD] and hybrid:CHUNK[,OVERHEAD[,SHARE]]: pixels handed "
+            "out while the machine runs, all or those after the first SHARE (0.5) of each PE, loads simulated; "
+            "default: the machine's, cyclic on spa")
+        ->type_name("NAME");
     command.add_option("--fold", o.fold, "Slots to PEs where P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
-        ->capture_default_str();
+        ->default_str("cyclic");
     command
         .add_option("--format", o.format,
                     "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
-                    "fraction bits, t truncates; default: e6m15 on spa, fp32 on grande")
+                    "fraction bits, t truncates; default: the machine's, fp32 on grande, e6m15 on the others")
         ->type_name("NAME");
     command.add_option("--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
         ->type_name("N");
@@ -86,6 +96,38 @@ Antialias antialias_settings(const RenderOptions& o) {
     return antialias;
 }
 
+// --offset and --fold say how slots lie: beside a mapping that says otherwise, or has no slots, one of the two is a
+// mistake.
+void check_slot_options(const RenderOptions& o, const MappingText& mapping) {
+    if (!mapping.has_slots() && o.offset)
+        throw UserError(
+            fmt::format("--offset {} with --mapping {}: {} has no offset; leave --offset out, or choose cyclic",
+                        *o.offset, mapping.text, mapping.name));
+    if (!mapping.has_slots() && !o.fold.empty())
+        throw UserError(fmt::format(
+            "--fold {} with --mapping {}: {} has no slots to fold; leave --fold out, or choose cyclic or column",
+            o.fold, mapping.text, mapping.name));
+    if (o.offset && mapping.parameter.value_or(*o.offset) != *o.offset)
+        throw UserError(fmt::format("--offset {} with --mapping {}: the mapping's offset is {}; leave one of them out",
+                                    *o.offset, mapping.text, *mapping.parameter));
+}
+
+// Fills mapping and, where the distribution is a dynamic one, its plan. The pixels that a hybrid starts with, and those
+// that the device traces in place of a dynamic machine, are the cyclic mapping's.
+void set_mapping(RingSettings& settings, const RenderOptions& o, std::uint32_t width, std::uint32_t height) {
+    const Machine& machine = settings.machine;
+    std::string text = o.mapping.empty() ? machine.mapping : o.mapping;
+    if (text.starts_with("dynamic") || text.starts_with("hybrid")) {
+        settings.dynamic = parse_dynamic(text);
+        text = "cyclic";
+    }
+    const MappingText mapping = parse_mapping(text);
+    check_slot_options(o, mapping);
+    const std::uint32_t pes = o.pes.value_or(mapping.pes().value_or(machine.pes.value_or(width)));
+    const std::uint32_t offset = o.offset.value_or(machine.offset % width);
+    settings.mapping = make_mapping(text, width, height, pes, offset, o.fold.empty() ? "cyclic" : o.fold);
+}
+
 }  // namespace
 
 RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
@@ -97,9 +139,7 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     std::vector<std::uint32_t> size = {static_cast<std::uint32_t>(scene.view.width),
                                        static_cast<std::uint32_t>(scene.view.height)};
     if (!o.size.empty()) size = parse_image_size(o.size);
-    const std::uint32_t pes = o.pes.value_or(settings.machine.pes.value_or(size[0]));
-    settings.mapping =
-        make_mapping(o.mapping, size[0], size[1], pes, o.offset.value_or(settings.machine.offset % size[0]), o.fold);
+    set_mapping(settings, o, size[0], size[1]);
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.sampling = o.sampling == "corners" ? Sampling::kCorners : Sampling::kCentres;
     settings.antialias = antialias_settings(o);

@@ -16,8 +16,8 @@ namespace raya {
 
 /// As given on the command line; what is empty follows the machine, the scene or the device.
 struct RenderOptions {
-    std::string scene, machine = "spa", size, mapping = "cyclic", fold = "cyclic", format, sampling = "centres", device,
-                       antialias = "none", points, kernel_dir;
+    std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
+                       points, kernel_dir;
     std::optional<double> threshold;
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };

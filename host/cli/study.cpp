@@ -11,6 +11,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
+#include "cli/studies.hpp"
 #include "error.hpp"
 #include "report/progress.hpp"
 #include "report/table.hpp"
@@ -30,16 +31,6 @@ struct FormatsCommand {
     std::optional<std::uint32_t> lanes;
     int samples = 5;
 };
-
-// Makes the folder, and refuses it before the work rather than after if the files could not be written.
-void prepare_folder(const fs::path& folder, const std::vector<std::string>& files) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-        throw UserError(
-            fmt::format("-o {}: cannot make the folder: {}; name another one", folder.string(), error.message()));
-    for (const std::string& file : files) check_writable(folder / file);
-}
 
 // Each format once, in the order given; fp32 is always there.
 std::vector<NumberFormat> formats_of(const FormatsCommand& command) {
@@ -149,8 +140,18 @@ std::string names_of_studies(const CLI::App& command) {
 
 }  // namespace
 
+void prepare_folder(const fs::path& folder, const std::vector<std::string>& files) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+        throw UserError(
+            fmt::format("-o {}: cannot make the folder: {}; name another one", folder.string(), error.message()));
+    for (const std::string& file : files) check_writable(folder / file);
+}
+
 void add_study_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("study", "Measure over many renders and write tables");
+    add_laboratory_studies(*command);
     add_formats_study(*command);
     // What is no study's name would be "not expected" without a word on what is: it lands here instead.
     const auto refuse = [command](const std::string& name) {

@@ -6,28 +6,75 @@
 #include <algorithm>
 
 #include "error.hpp"
+#include "machine/budget.hpp"
 
 namespace raya {
+namespace {
+
+// Kohata & Ito 1993. Marks: [P] printed there, [D] arithmetic on what is printed, [?] ours.
+Machine spa() {
+    return {
+        .name = "spa",
+        .title = "the SPA",
+        .topology = "ring+bus",                          // [P]
+        .pes = 256,                                      // [P] DSPs
+        .offset = 16,                                    // [P] the best
+        .pe_memory_bytes = 32 * 1024,                    // [P]
+        .bounces = 8,                                    // [P] up to 8 reflections and refractions
+        .format = {6, 15, false},                        // [P] 22 bits; [?] how they are divided
+        .cycle_ns = 100,                                 // [P] 20 MFLOPS
+        .link_words_per_s = 6e6,                         // [P] DMA
+        .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3 and 4: 32 more rotations of 768 words, 10 ms
+        .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
+}
+
+// An array and a mapping that the paper compares with its own, on PEs of the SPA without a limit to their memory, so
+// that loads can be compared. What times their own PEs and links would take is not known to us: they have none.
+Machine array_like(const std::string& name, const std::string& title, const std::string& topology, std::uint32_t pes,
+                   const std::string& mapping) {
+    Machine machine;
+    machine.name = name;
+    machine.title = title;
+    machine.topology = topology;
+    machine.pes = pes;
+    machine.format = spa().format;
+    machine.mapping = mapping;
+    return machine;
+}
+
+// [?] The SPA without the memory limit, one PE a column; fp32, as it is there for scenes that no SPA could hold.
+Machine grande() {
+    Machine machine = spa();
+    machine.name = machine.title = "grande";
+    machine.pes = {};
+    machine.pe_memory_bytes = {};
+    machine.format = {};
+    return machine;
+}
+
+// [P] Table 2's other SPA: one DSP, and the same host.
+Machine spa1() {
+    Machine machine = spa();
+    machine.name = "spa1";
+    machine.title = "the SPA with one DSP";
+    machine.pes = 1;
+    machine.offset = 0;  // of no effect
+    return machine;
+}
+
+}  // namespace
 
 const std::vector<Machine>& machines() {
     static const std::vector<Machine> all = {
-        // Kohata & Ito 1993: 256 DSPs, 32 KB each, ring and bus, up to 8 reflections and refractions; best offset 16
-        {.name = "spa",
-         .title = "the SPA",
-         .topology = "ring+bus",
-         .pes = 256,
-         .offset = 16,
-         .pe_memory_bytes = 32 * 1024,
-         .format = {6, 15, false}},  // 22 bits; how they are divided is not printed in the paper
-        // ours: the same array without the memory limit, one PE a column; fp32, as it is there for scenes that no SPA
-        // could hold
-        {.name = "grande",
-         .title = "grande",
-         .topology = "ring+bus",
-         .pes = {},
-         .offset = 16,
-         .pe_memory_bytes = {},
-         .format = {}},
+        spa(),
+        grande(),
+        spa1(),
+        // [P] 256 cells; every 16th pixel in both directions [D: n = 16 where P = n x n]
+        array_like("cap", "the array of the CAP, on PEs of the SPA", "2-D array", 256, "grid:16x16"),
+        // [P] 64 nodes; every 8th pixel of every 8th line [D]
+        array_like("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array", 64, "grid:8x8"),
+        // [P] each PE takes the next pixel from a root when it has finished; [?] as many PEs as the SPA has
+        array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", 256, "dynamic:1"),
     };
     return all;
 }
@@ -42,21 +89,9 @@ const Machine& machine_named(const std::string& name) {
 }
 
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events() {
-    constexpr std::uint32_t kRoot = 8;  // division, square root
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};
-    cycles[RAYA_PRIMARY] = 6 + 6 + 2 * kRoot;                                // two steps from the corner; normalise
-    cycles[RAYA_REFLECTED] = 1;                                              // weight
-    cycles[RAYA_REFRACTED] = 3 + 2 + 2 + 2 + 3 + 3 + 3 + 1 + 6 + 4 * kRoot;  // Snell, direction, normalise
-    cycles[RAYA_SHADOW] = 3 + 3 + 3 + 3 + 2 * kRoot;                         // arm, length, N.L, direction
-    cycles[RAYA_SPHERE_TESTS] = 3 + 3 + 3 + 3 + 2 + kRoot;
-    cycles[RAYA_PLANE_TESTS] = 3 + 3 + kRoot;
-    cycles[RAYA_POLYGON_TESTS] = 3 + 3 + kRoot + 2 + 3 * 2;  // three edges
-    cycles[RAYA_CONE_TESTS] = 3 + 3 + 3 + 6 + 6 + 2 + 12 + 2 + 4 + 3 * kRoot;
-    cycles[RAYA_SHADED] =
-        3 + 3 + 6 + 3 + 3 + 4 + 3 + 3 + 4 + 3 + 2 * kRoot;  // point, normal, tint, ambient, mirror, margin
-    cycles[RAYA_LIT] = 3 + 3 + 3 + 3 + 3;                   // N.L, R.L, sum
-    cycles[RAYA_HIGHLIGHTS] = 2 + 7 + 11 + kRoot;           // a power
-    return cycles;                                          // hits cost nothing of their own
+    for (std::size_t event = 0; event < cycles.size(); ++event) cycles[event] = cycles_of(budgets()[event]);
+    return cycles;
 }
 
 }  // namespace raya

@@ -23,7 +23,14 @@ struct Machine {
     std::uint32_t offset = 0;                      // p of the cyclic mapping
     std::optional<std::uint32_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
-    NumberFormat format{};  // that its PEs compute in
+    NumberFormat format{};           // that its PEs compute in
+    std::string mapping = "cyclic";  // pixels to PEs, as --mapping takes it
+
+    // Rates of the time model (machine/time_model.hpp); empty where they are not known.
+    std::optional<double> cycle_ns;          // of a PE, one multiply-accumulate
+    std::optional<double> link_words_per_s;  // of one PE to its neighbour
+    std::optional<double> rotation_sync_ms;  // what a rotation takes beside its words
+    std::optional<double> host_words_per_s;  // broadcast and gather
 };
 
 /// The machines that `--machine` knows, the default first.
@@ -32,9 +39,8 @@ const std::vector<Machine>& machines();
 /// The machine of that name; UserError lists those there are.
 const Machine& machine_named(const std::string& name);
 
-/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h): the arithmetic operations of the
-/// kernels' formulas, a multiply-accumulate counted once as on a DSP of one multiply-accumulate a cycle, a division or
-/// square root as 8. A plain weighted sum: no memory access, loop or call is in it.
+/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h): those of its instruction budget
+/// (machine/budget.hpp).
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events();
 
 }  // namespace raya

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "machine/budget.hpp"
 #include "report/table.hpp"
 
 namespace raya {
@@ -24,6 +25,8 @@ Json load_json(const Load& load) {
 
 Json loads_json(const RenderReport& r) {
     Json all = load_json(r.load);
+    all["simulated"] = r.requests.has_value();
+    if (r.requests) all["requests"] = *r.requests;
     for (const auto& [phase, load] : r.loads) all[phase] = load_json(load);
     return all;
 }
@@ -37,6 +40,28 @@ Json antialias_json(const std::optional<Antialiasing>& a) {
     json["recomputed_pixels"] = a->recomputed;
     json["recomputed_share"] = a->recomputed_share;
     return json;
+}
+
+// Operations of all that was counted, by the modelled PEs' instruction budget.
+Json budget_json(const EventCounts& events) {
+    const Operations sum = operations_of(events);
+    return {{"multiply_accumulates", sum.multiply_accumulates},
+            {"divisions", sum.divisions},
+            {"roots", sum.roots},
+            {"moves", sum.moves},
+            {"branches", sum.branches}};
+}
+
+Json modelled_json(const std::optional<ModelledTime>& time) {
+    if (!time) return {};
+    return {{"objects", time->objects_ms},
+            {"compute", time->compute_ms},
+            {"filter", time->filter_ms},
+            {"compare", time->compare_ms},
+            {"communication", time->communication_ms},
+            {"image", time->image_ms},
+            {"total", time->total_ms},
+            {"factor", time->factor}};
 }
 
 Json measured_json(const RenderReport& report) {
@@ -72,8 +97,8 @@ Json to_json(const RenderReport& r) {
                        {"topology", r.machine.topology},
                        {"pes", r.machine.pes},
                        {"mapping", r.machine.mapping},
-                       {"offset", r.machine.offset},
-                       {"fold", r.machine.fold},
+                       {"offset", r.machine.offset ? Json(*r.machine.offset) : Json()},
+                       {"fold", r.machine.fold ? Json(*r.machine.fold) : Json()},
                        {"format", r.machine.format},
                        {"bounces", r.machine.bounces},
                        {"pe_memory_bytes", r.machine.pe_memory_bytes ? Json(r.machine.pe_memory_bytes) : Json()},
@@ -94,15 +119,17 @@ Json to_json(const RenderReport& r) {
     json["communication"] = {{"broadcasts", c.broadcasts}, {"broadcast_words", c.broadcast_words},
                              {"rotations", c.rotations},   {"rotation_words", c.rotation_words},
                              {"gathers", c.gathers},       {"gather_words", c.gather_words}};
+    json["budget"] = budget_json(e);
+    json["modelled_ms"] = modelled_json(r.modelled);
     json["measured"] = measured_json(r);
     return json;
 }
 
 namespace {
 
-std::string load_line(const std::string& label, const Load& load) {
-    return fmt::format("{:7} u = {:.3f}, speed-up {:.1f} of {}, efficiency {:.1f} % (modelled cycles)\n", label,
-                       load.imbalance, load.speedup, load.per_pe.size(), 100 * load.efficiency);
+std::string load_line(const std::string& label, const Load& load, const std::string& remark = {}) {
+    return fmt::format("{:7} u = {:.3f}, speed-up {:.1f} of {}, efficiency {:.1f} % (modelled cycles{})\n", label,
+                       load.imbalance, load.speedup, load.per_pe.size(), 100 * load.efficiency, remark);
 }
 
 std::string antialias_lines(const RenderReport& r) {
@@ -118,17 +145,27 @@ std::string antialias_lines(const RenderReport& r) {
            fmt::format("ring    {} rotations, {} words\n", r.communication.rotations, r.communication.rotation_words);
 }
 
+std::string model_line(const RenderReport& r) {
+    if (!r.modelled) return {};
+    const ModelledTime& t = *r.modelled;
+    return fmt::format(
+        "model   objects {:.1f} ms, compute {:.1f} ms, communication {:.1f} ms, image {:.1f} ms: {:.1f} ms "
+        "(modelled time of {})\n",
+        t.objects_ms, t.compute_ms, t.communication_ms, t.image_ms, t.total_ms, r.machine.name);
+}
+
 }  // namespace
 
 std::string human_summary(const RenderReport& r) {
     const EventCounts& e = r.events;
     const std::uint64_t rays = ray_count(e);
-    std::string text = fmt::format("{}: {} x {} pixels on {} ({} PEs, {} mapping, offset {}), {}, {} bounces\n",
-                                   r.scene, r.image.width, r.image.height, r.machine.name, r.machine.pes,
-                                   r.machine.mapping, r.machine.offset, r.machine.format, r.machine.bounces);
+    std::string text = fmt::format("{}: {} x {} pixels on {} ({} PEs, {} mapping{}), {}, {} bounces\n", r.scene,
+                                   r.image.width, r.image.height, r.machine.name, r.machine.pes, r.machine.mapping,
+                                   r.machine.offset ? fmt::format(", offset {}", *r.machine.offset) : "",
+                                   r.machine.format, r.machine.bounces);
     text += fmt::format("rays    {} = {} primary + {} reflected + {} refracted + {} shadow\n", rays, e[RAYA_PRIMARY],
                         e[RAYA_REFLECTED], e[RAYA_REFRACTED], e[RAYA_SHADOW]);
-    text += load_line("load", r.load) + antialias_lines(r);
+    text += load_line("load", r.load, r.requests ? ", simulated" : "") + antialias_lines(r) + model_line(r);
     text += fmt::format(
         "memory  {:.1f} KB in each PE{}\n", static_cast<double>(r.machine.pe_memory_used_bytes) / 1024,
         r.machine.pe_memory_bytes ? fmt::format(" of {} KB", r.machine.pe_memory_bytes / 1024) : ", no limit");

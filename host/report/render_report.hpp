@@ -9,6 +9,7 @@
 
 #include "cl/profile.hpp"
 #include "machine/machine.hpp"
+#include "machine/time_model.hpp"
 #include "report/communication.hpp"
 #include "report/load.hpp"
 
@@ -33,8 +34,13 @@ struct RenderReport {
     } image;
 
     struct {
-        std::string name, topology, mapping, fold, format;
-        std::uint32_t pes = 0, offset = 0, bounces = 0;
+        std::string name, topology;
+        std::string mapping;              // "cyclic" or "column", else the whole text: "grid:16x16"
+        std::optional<std::string> fold;  // of a mapping with slots
+        std::string format;
+        std::uint32_t pes = 0;
+        std::optional<std::uint32_t> offset;  // p of a mapping with slots
+        std::uint32_t bounces = 0;
         std::uint64_t pe_memory_bytes = 0;  // 0: no limit
         std::uint64_t pe_memory_used_bytes = 0;
     } machine;
@@ -45,10 +51,12 @@ struct RenderReport {
     } device;
 
     EventCounts events{};
+    std::optional<std::uint64_t> requests;            // for pixels, where loads are a simulated dynamic distribution's
     Load load;                                        // of all phases together
     std::vector<std::pair<std::string, Load>> loads;  // of each phase, by its name
     std::optional<Antialiasing> antialias;
     Communication communication;
+    std::optional<ModelledTime> modelled;  // empty: the machine's rates are not known
 
     struct {
         double build_s = 0, render_s = 0;

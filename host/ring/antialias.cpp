@@ -5,6 +5,7 @@
 #include <array>
 
 #include "error.hpp"
+#include "ring/mapping.hpp"
 
 namespace raya {
 namespace {
@@ -21,6 +22,19 @@ AntialiasMethod parse_antialias(const std::string& text) {
 }
 
 std::string antialias_name(AntialiasMethod method) { return kMethods.at(static_cast<std::size_t>(method)); }
+
+void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic) {
+    if (dynamic && method != AntialiasMethod::kNone)
+        throw UserError(
+            fmt::format("--antialias {} with a dynamic or hybrid --mapping: who owns a neighbour is decided "
+                        "while the machine runs; choose cyclic, column, rows, blocks, grid or tiles",
+                        antialias_name(method)));
+    if (method == AntialiasMethod::kNone || mapping.kind != RAYA_RANDOM) return;
+    throw UserError(fmt::format(
+        "--antialias {} with --mapping {}: random: neighbours live on PEs all over the ring; choose cyclic, "
+        "column, rows, blocks, grid or tiles",
+        antialias_name(method), mapping_text(mapping)));
+}
 
 raya_u32 parse_points(const std::string& text) {
     if (text == "axes") return RAYA_POINTS_AXES;

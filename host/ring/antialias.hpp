@@ -22,6 +22,9 @@ struct Antialias {
 AntialiasMethod parse_antialias(const std::string& text);
 std::string antialias_name(AntialiasMethod method);
 
+/// Throws UserError where the mapping leaves no neighbours to be had by turning the ring.
+void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic);
+
 /// "axes", "diagonals" as RAYA_POINTS_*; UserError names the legal values.
 raya_u32 parse_points(const std::string& text);
 std::string points_name(raya_u32 points);

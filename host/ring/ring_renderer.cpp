@@ -23,6 +23,7 @@ JobSettings job_settings(const RingSettings& settings) {
 // The settings with lanes and group size chosen, refused before anything is packed or taken if the kernels cannot be
 // built with them.
 RingSettings checked(RingSettings settings, const DeviceInfo& device) {
+    check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
     if (!settings.kernels.lanes) settings.kernels.lanes = default_lanes(device);
     if (!settings.kernels.group_size) settings.kernels.group_size = default_group_size(device);
     check_kernel_options(
@@ -151,6 +152,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     }
     if (contrast_) collect_marks(result);
     collect_events(result);
+    if (settings_.dynamic) simulate_schedule(result);
     result.render_s = seconds_since(start);
     describe(result);
     return result;
@@ -160,7 +162,7 @@ void RingRenderer::prepare(RingResult& result) {
     const auto width = static_cast<int>(settings_.mapping.width), height = static_cast<int>(settings_.mapping.height);
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
     result.image = {width, height, std::vector<float>(3 * pixels)};
-    result.all.cost = {width, height, std::vector<float>(pixels)};
+    result.all.cost = {settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
     if (contrast_) result.mask = result.image;
     for (PassCounters& counters : counters_) {
         Phase phase;
@@ -207,8 +209,8 @@ void RingRenderer::collect_costs(std::uint32_t block, RingResult& result) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
         for_each_pixel(settings_.mapping, block, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
-            result.phases[i].cost.values[to] = static_cast<float>(cycles[from]);
-            result.all.cost.values[to] += static_cast<float>(cycles[from]);
+            result.phases[i].cost.cycles[to] = cycles[from];
+            result.all.cost.cycles[to] += cycles[from];
         });
     }
 }
@@ -238,6 +240,14 @@ void RingRenderer::collect_events(RingResult& result) {
         result.phases[i].load = load_of(std::move(loads));
     }
     result.all.load = load_of(std::move(all));
+}
+
+// Work-groups run to their end, so what a PE takes while the machine runs cannot be seen on a device; but it follows
+// from what the pixels cost.
+void RingRenderer::simulate_schedule(RingResult& result) {
+    const Schedule schedule = dynamic_schedule(result.all.cost, settings_.mapping, *settings_.dynamic);
+    result.requests = schedule.requests;
+    result.all.load = result.phases.front().load = schedule.load;
 }
 
 void RingRenderer::describe(RingResult& result) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,11 @@
 #include "ring/antialias.hpp"
 #include "ring/bus.hpp"
 #include "ring/contrast.hpp"
+#include "ring/cost_image.hpp"
 #include "ring/filter.hpp"
 #include "ring/neighbour_exchange.hpp"
 #include "ring/pe_memory.hpp"
+#include "ring/schedule.hpp"
 #include "ring/tracer.hpp"
 #include "scene/packer.hpp"
 #include "scene/scene.hpp"
@@ -32,7 +35,8 @@ struct KernelChoice {
 
 struct RingSettings {
     Machine machine;
-    raya_mapping mapping{};  // image size, PEs, offset, fold
+    std::optional<DynamicPlan> dynamic;  // loads are those of a dynamic distribution, simulated from the pixels' costs
+    raya_mapping mapping{};              // image size, PEs, which of them owns which pixel
     std::uint32_t bounces = 8;
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
@@ -47,15 +51,16 @@ struct Phase {
     std::string name;  // "trace", "supersample"
     EventCounts events{};
     Load load;       // modelled cycles of each PE, from its own counters
-    GreyImage cost;  // modelled cycles of each pixel
+    CostImage cost;  // modelled cycles of each pixel
 };
 
 struct RingResult {
     Image image;
-    std::vector<Phase> phases;     // the first pass, and supersampling where it was asked for
-    Phase all;                     // their sums
-    Image mask;                    // 1 where a pixel was supersampled, else 0; empty without supersampling
-    std::uint64_t recomputed = 0;  // pixels supersampled
+    std::vector<Phase> phases;              // the first pass, and supersampling where it was asked for
+    Phase all;                              // their sums
+    Image mask;                             // 1 where a pixel was supersampled, else 0; empty without supersampling
+    std::uint64_t recomputed = 0;           // pixels supersampled
+    std::optional<std::uint64_t> requests;  // of a simulated dynamic distribution
     Communication communication;
     PeMemory pe_memory;
     std::uint32_t lanes = 0, group_size = 0;
@@ -86,6 +91,7 @@ class RingRenderer {
     void collect_costs(std::uint32_t block, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
+    void simulate_schedule(RingResult& result);
     void describe(RingResult& result);
 
     Session& session_;

@@ -35,7 +35,7 @@ Scene generate_centre() {
     Scene scene;
     scene.name = "centre.nff";
     scene.background = {0.3, 0.5, 0.85};
-    scene.view = {{0, -11, 4.4}, {0, 0, 1.35}, {0, 0, 1}, 36, 0, 256, 256};
+    scene.view = {{0, -11, 4.4}, {0, 0, 1.35}, {0, 0, 1}, 28, 0, 256, 256};
     scene.lights = {{{-7, -8, 11}, Colour(0.62, 0.6, 0.55)}, {{8, -5, 7}, Colour(0.22, 0.24, 0.3)}};
     scene.surfaces = {
         {{1, 1, 1}, 0.02, 0.12, 200, 0.85, 1.5, {}},     // glass

@@ -2,31 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "study/formats_findings.hpp"
+#include "study/text_tables.hpp"
 
 namespace raya {
 namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-        text.replace(at, what.size(), by);
-    return text;
-}
-
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    return '"' + replaced(text, "\"", "\"\"") + '"';
-}
-
-nlohmann::ordered_json json_number(double value) {
-    if (std::isfinite(value)) return value;
-    return fmt::format("{}", value);
-}
 
 const char* rounding_name(const NumberFormat& format) { return format.truncates ? "truncate" : "nearest"; }
 
@@ -56,20 +40,6 @@ nlohmann::ordered_json scene_json(const SceneRows& scene) {
 std::string ratio_range(double lowest, double highest) {
     const std::string from = fmt::format("{:.2f}", lowest), to = fmt::format("{:.2f}", highest);
     return from == to ? from : from + " to " + to;
-}
-
-std::string markdown_table(const Cells& rows) {
-    std::string text;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        text += '|';
-        for (const std::string& cell : rows[i]) text += ' ' + replaced(cell, "|", "\\|") + " |";
-        text += '\n';
-        if (i > 0) continue;
-        text += '|';
-        for (std::size_t column = 0; column < rows[i].size(); ++column) text += "---|";
-        text += '\n';
-    }
-    return text;
 }
 
 Cells scene_cells(const SceneRows& scene) {

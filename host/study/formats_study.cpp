@@ -87,15 +87,6 @@ std::vector<NumberFormat> reduced_formats() {
     return formats;
 }
 
-std::vector<LabelledScene> embedded_study_scenes() {
-    std::vector<LabelledScene> scenes;
-    for (const std::string name : {"centre", "spheres", "glass", "polygons", "cones"}) {
-        const std::string file = "scenes/" + name + ".nff";
-        scenes.push_back({name, parse_nff(embedded_files().at(file), file)});
-    }
-    return scenes;
-}
-
 FormatsStudy run_formats_study(Session& session, const std::vector<LabelledScene>& scenes,
                                const FormatsSettings& settings, const ProgressCallback& progress) {
     const RingSettings ring = ring_settings(settings);
@@ -107,7 +98,7 @@ FormatsStudy run_formats_study(Session& session, const std::vector<LabelledScene
                        .bounces = ring.bounces,
                        .machine = ring.machine.name,
                        .pes = ring.mapping.pes,
-                       .offset = ring.mapping.offset,
+                       .offset = ring.mapping.parameter,
                        .device = session.device(),
                        .samples = settings.samples,
                        .scenes = {}};

@@ -10,6 +10,7 @@
 #include "ring/ring_renderer.hpp"
 #include "scene/scene.hpp"
 #include "study/image_difference.hpp"
+#include "study/scenes.hpp"
 
 namespace raya {
 
@@ -19,15 +20,6 @@ inline constexpr double kShownStep = 1.0 / 255;
 /// The reduced formats of the study: e8m21 down to e6m13 (e6m15 is the SPA's), each rounding to nearest, then
 /// truncating.
 std::vector<NumberFormat> reduced_formats();
-
-/// A scene under the name by which reports call it.
-struct LabelledScene {
-    std::string label;
-    Scene scene;
-};
-
-/// centre, spheres, glass, polygons, cones: the scenes of the project that the program carries within itself.
-std::vector<LabelledScene> embedded_study_scenes();
 
 struct FormatsSettings {
     std::uint32_t width = 256, height = 256;                // pixels, 1..16384

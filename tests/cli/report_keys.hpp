@@ -75,6 +75,19 @@ inline std::set<std::string> fixed_keys() {
                                   "communication.rotation_words count",
                                   "communication.gathers count",
                                   "communication.gather_words count",
+                                  "budget.multiply_accumulates count",
+                                  "budget.divisions count",
+                                  "budget.roots count",
+                                  "budget.moves count",
+                                  "budget.branches count",
+                                  "modelled_ms.objects number",
+                                  "modelled_ms.compute number",
+                                  "modelled_ms.filter number",
+                                  "modelled_ms.compare number",
+                                  "modelled_ms.communication number",
+                                  "modelled_ms.image number",
+                                  "modelled_ms.total number",
+                                  "modelled_ms.factor number",
                                   "measured.build_s number",
                                   "measured.render_s number",
                                   "measured.commands[].label string",
@@ -84,6 +97,7 @@ inline std::set<std::string> fixed_keys() {
                                   "measured.commands[].min_ns count",
                                   "measured.commands[].mean_ns number",
                                   "measured.commands[].max_ns count"};
+    keys.insert("load.simulated boolean");
     keys.merge(load_keys("load."));
     keys.merge(load_keys("load.trace."));
     return keys;

@@ -55,9 +55,13 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
                                "grande",
                                "--size N|WxH",
                                "in pixels, 1..16384 a side; default: the scene's",
-                               "1..W*H; default: the machine's",
+                               "1..W*H; default: the machine's, or A*B of a grid",
                                "in pixels, 0..W-1; default: 16",
-                               "--mapping NAME=cyclic",
+                               "--mapping NAME",
+                               "cyclic:p, column",
+                               "grid:AxB",
+                               "tiles:WxH",
+                               "random:seed",
                                "cyclic|block=cyclic",
                                "--format NAME",
                                "0..31; default: 8",
@@ -108,6 +112,14 @@ TEST_CASE("a render ends with a short summary", "[cli]") {
         CHECK_THAT(out, Catch::Contains(text));
     CHECK_THAT(out, Catch::Contains(report["image"]["hash"].get<std::string>()));
     CHECK_THAT(out, Catch::Contains(std::to_string(report["rays"]["shadow"].get<int>()) + " shadow"));
+}
+
+TEST_CASE("the summary names a mapping without slots, and a grid brings its own PEs", "[cli]") {
+    const ScratchFolder folder;
+    const std::string out = succeed({"render", scene_file("planes"), "-o", folder / "x.png", "--size", "12", "--lanes",
+                                     "4", "--mapping", "grid:3x2"})
+                                .out;
+    CHECK_THAT(out, Catch::Contains("12 x 12 pixels on spa (6 PEs, grid:3x2 mapping), e6m15"));
 }
 
 TEST_CASE("--quiet prints nothing", "[cli]") {

@@ -22,7 +22,7 @@ void check_render_options(const std::vector<Row>& rows) {
 
 TEST_CASE("a name that the program does not know is refused with those that it knows", "[cli]") {
     check_render_options({{{"--machine", "sparc"}, {"'sparc'", "spa, grande"}},
-                          {{"--mapping", "spiral"}, {"--mapping spiral", "cyclic, column"}},
+                          {{"--mapping", "spiral"}, {"--mapping spiral", "cyclic, cyclic:p, column", "random:seed"}},
                           {{"--fold", "diagonal"}, {"--fold diagonal", "cyclic or block"}},
                           {{"--format", "e4m15"}, {"--format e4m15", "fp32", "X = 5..8"}},
                           {{"--format", "e6m22"}, {"--format e6m22", "Y = 4..21"}},
@@ -41,6 +41,23 @@ TEST_CASE("a number outside its range is refused with the range", "[cli]") {
                           {{"--size", "8x16", "--pes", "8", "--offset", "8"}, {"--offset 8", "0..7", "width"}},
                           {{"--size", "100000"}, {"--size 100000x100000", "1..16384 pixels"}},
                           {{"--size", "16385x1"}, {"--size 16385x1", "1..16384 pixels"}}});
+}
+
+TEST_CASE("a mapping that is written wrong, or does not go with image, PEs, offset or fold, is refused", "[cli]") {
+    check_render_options(
+        {{{"--mapping", "grid:4"}, {"--mapping grid:4:", "grid:AxB, A rows of B PEs"}},
+         {{"--mapping", "grid:4x4", "--pes", "8"}, {"--pes 8 with --mapping grid:4x4", "16 PEs; leave --pes out"}},
+         {{"--mapping", "grid:4x4", "--size", "3"}, {"--mapping grid:4x4: 16 PEs", "1..9"}},
+         {{"--mapping", "tiles:5x4", "--size", "12", "--pes", "8"}, {"--mapping tiles:5x4", "12 x 12", "tiles:4x4"}},
+         {{"--mapping", "cyclic:12", "--size", "12", "--pes", "8"}, {"--mapping cyclic:12", "0..11", "width"}},
+         {{"--mapping", "cyclic:3", "--offset", "4"}, {"--offset 4 with --mapping cyclic:3", "offset is 3"}},
+         {{"--mapping", "column", "--offset", "4"}, {"--offset 4 with --mapping column", "offset is 0"}},
+         {{"--mapping", "rows", "--offset", "0"}, {"--offset 0 with --mapping rows", "no offset", "choose cyclic"}},
+         {{"--mapping", "tiles:4x4", "--fold", "cyclic"},
+          {"--fold cyclic with --mapping tiles:4x4", "no slots to fold", "cyclic or column"}},
+         {{"--mapping", "random", "--antialias", "filter"},
+          {"--antialias filter with --mapping random:1", "neighbours live on PEs all over the ring",
+           "choose cyclic, column, rows, blocks, grid or tiles"}}});
 }
 
 TEST_CASE("an absurdly large number is refused like any other outside the range", "[cli]") {

@@ -90,6 +90,12 @@ TEST_CASE("the report has its fixed keys, each of its type", "[cli]") {
     without_limit.erase("machine.pe_memory_bytes count");
     without_limit.insert("machine.pe_memory_bytes null");
     CHECK(keys_of(RenderFiles("planes", {"--machine", "grande"}).report()) == without_limit);
+    std::set<std::string> without_slots = fixed_keys();
+    for (const std::string key : {"machine.offset", "machine.fold"}) {
+        without_slots.erase(key + (key == "machine.fold" ? " string" : " count"));
+        without_slots.insert(key + " null");
+    }
+    CHECK(keys_of(RenderFiles("planes", {"--mapping", "rows"}).report()) == without_slots);
 }
 
 TEST_CASE("the report's numbers agree with each other and with the scene", "[cli]") {
@@ -126,6 +132,38 @@ TEST_CASE("the report says what was asked for", "[cli]") {
         CHECK_THAT(report["device"]["build_options"].get<std::string>(), Catch::Contains(option));
     CHECK(RenderFiles("planes", {"--mapping", "column"}).report()["machine"]["offset"] == 0);
     CHECK(RenderFiles("planes", {"--machine", "grande"}).report()["machine"]["pes"] == kTestWidth);
+}
+
+TEST_CASE("the report names the mapping: slots by name and offset, others by their whole text", "[cli]") {
+    struct Row {
+        std::string mapping, name;
+        Json offset, fold;
+    };
+    for (const Row& row : {Row{"cyclic", "cyclic", 16, "cyclic"}, Row{"cyclic:3", "cyclic", 3, "cyclic"},
+                           Row{"column", "column", 0, "cyclic"}, Row{"grid:4x5", "grid:4x5", {}, {}},
+                           Row{"tiles:5x3", "tiles:5x3", {}, {}}, Row{"random", "random:1", {}, {}}}) {
+        const Json machine = RenderFiles("planes", {"--mapping", row.mapping}).report()["machine"];
+        INFO(machine.dump());
+        CHECK(machine["mapping"] == row.name);
+        CHECK(machine["offset"] == row.offset);
+        CHECK(machine["fold"] == row.fold);
+    }
+}
+
+TEST_CASE("dynamic and hybrid distribution are simulated, and the report says so", "[cli]") {
+    const Json fixed = RenderFiles("planes", {"--mapping", "cyclic"}).report();
+    for (const char* mapping : {"dynamic:4", "dynamic:4,100", "hybrid:4,0,0.5"}) {
+        const Json report = RenderFiles("planes", {"--mapping", mapping, "--pes", "9"}).report();
+        INFO(report["load"].dump());
+        CHECK(report["machine"]["mapping"] == mapping);
+        CHECK(report["machine"]["offset"].is_null());
+        CHECK(report["load"]["simulated"] == true);
+        CHECK(report["load"]["requests"].get<int>() <= (kTestWidth * kTestHeight + 3) / 4);
+        CHECK(report["load"]["per_pe"].size() == 9);
+        CHECK(report["image"]["hash"] == fixed["image"]["hash"]);
+    }
+    CHECK(fixed["load"]["simulated"] == false);
+    CHECK(RenderFiles("planes", {"--machine", "links"}).report()["machine"]["mapping"] == "dynamic:1");
 }
 
 TEST_CASE("the hash is that of the pixels written, the cost image adds up to the load", "[cli]") {

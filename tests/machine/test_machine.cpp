@@ -1,5 +1,6 @@
-// The machines' descriptions and the cost of what is counted.
+// The machines' descriptions.
 #include <catch2/catch.hpp>
+#include <cstdint>
 #include <set>
 #include <string>
 
@@ -27,6 +28,43 @@ TEST_CASE("grande is the same array without the limits", "[machine]") {
     CHECK(grande.bounces == machine_named("spa").bounces);
 }
 
+TEST_CASE("the SPA's rates are those of the paper's tables", "[machine]") {
+    const Machine& spa = machine_named("spa");
+    CHECK(spa.cycle_ns == 100.0);
+    CHECK(spa.link_words_per_s == 6e6);
+    CHECK(spa.rotation_sync_ms.value() == 0.1845);  // 10 ms / 32 - 768 / 6e6 s
+    CHECK(spa.host_words_per_s.value() == Approx(1.40e6).epsilon(0.005));
+    for (const char* same : {"spa1", "grande"}) {
+        CAPTURE(same);
+        CHECK(machine_named(same).cycle_ns == spa.cycle_ns);
+        CHECK(machine_named(same).link_words_per_s == spa.link_words_per_s);
+        CHECK(machine_named(same).rotation_sync_ms == spa.rotation_sync_ms);
+        CHECK(machine_named(same).host_words_per_s == spa.host_words_per_s);
+        CHECK(machine_named(same).mapping == "cyclic");
+    }
+    CHECK(machine_named("spa1").pes == 1u);
+    CHECK(machine_named("spa1").pe_memory_bytes == spa.pe_memory_bytes);
+}
+
+TEST_CASE("the arrays of others have their mapping, the SPA's numbers and no times", "[machine]") {
+    struct Row {
+        const char *name, *mapping;
+        std::uint32_t pes;
+    };
+    for (const Row& row :
+         {Row{"cap", "grid:16x16", 256}, Row{"pixel-machine", "grid:8x8", 64}, Row{"links", "dynamic:1", 256}}) {
+        CAPTURE(row.name);
+        const Machine& machine = machine_named(row.name);
+        CHECK(machine.mapping == row.mapping);
+        CHECK(machine.pes == row.pes);
+        CHECK(machine.format == machine_named("spa").format);
+        CHECK_FALSE(machine.pe_memory_bytes.has_value());
+        CHECK_FALSE(
+            (machine.cycle_ns || machine.link_words_per_s || machine.rotation_sync_ms || machine.host_words_per_s));
+        CHECK_THAT(machine.title, Contains("on PEs of the SPA"));
+    }
+}
+
 TEST_CASE("every machine is found by its own name, and no other", "[machine]") {
     std::set<std::string> names;
     for (const Machine& machine : machines()) {
@@ -40,16 +78,4 @@ TEST_CASE("every machine is found by its own name, and no other", "[machine]") {
         CHECK_THROWS_AS(machine_named(wrong), UserError);
         CHECK_THROWS_WITH(machine_named(wrong), Contains("'" + wrong + "'") && Contains("spa, grande"));
     }
-}
-
-TEST_CASE("every event costs cycles, but hits, whose cost lies in what follows them", "[machine]") {
-    const auto cycles = cycles_of_events();
-    for (int event = 0; event < RAYA_EVENTS; ++event) {
-        const bool free = event == RAYA_PRIMARY_HITS || event == RAYA_SHADOW_HITS;
-        CAPTURE(event);
-        CHECK((cycles[static_cast<std::size_t>(event)] == 0) == free);
-    }
-    CHECK(cycles[RAYA_PLANE_TESTS] < cycles[RAYA_SPHERE_TESTS]);
-    CHECK(cycles[RAYA_PLANE_TESTS] < cycles[RAYA_POLYGON_TESTS]);  // a polygon's test begins with its plane's
-    CHECK(cycles[RAYA_SPHERE_TESTS] < cycles[RAYA_CONE_TESTS]);
 }

@@ -51,6 +51,7 @@ struct Options {
     int bounces = 8;                 // reflections and refractions after the primary ray
     bool corners = false;            // sampling: through pixel corners as SPD does, else through centres
     std::optional<double> margin{};  // scene units; 1e-9 * scene_extent where empty
+    int threads = 2;                 // of render(), >= 1; of no effect on the image
 };
 
 /// Rays by kind, and how many of them hit something.
@@ -80,7 +81,7 @@ Ray primary_ray(const Scene& scene, const Options& options, double x, double y);
 Colour trace_pixel(const Scene& scene, const Options& options, double x, double y, Counts& counts,
                    History* history = nullptr);
 
-/// All pixels, on two threads; the result does not depend on them.
+/// All pixels, on options.threads threads; the result does not depend on them.
 Image render(const Scene& scene, const Options& options);
 
 /// A 32nd of a pixel is some 1e-4 of the image's side: a few hundred roundings of fp32, and still far below what is

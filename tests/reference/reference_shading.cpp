@@ -1,6 +1,5 @@
 // Camera and shading: kernels/README.md, Camera and Shading.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <thread>
@@ -151,24 +150,24 @@ Colour trace_pixel(const Scene& scene, const Options& options, double x, double 
 }
 
 Image render(const Scene& scene, const Options& options) {
-    constexpr int kThreads = 2;
     Options settled = options;
     settled.margin = margin_of(scene, options);
     const auto width = static_cast<std::size_t>(options.width);
     Image image{options.width, options.height, {}, {}};
     image.pixels.resize(width * static_cast<std::size_t>(options.height));
-    std::array<Counts, kThreads> counts;
+    std::vector<Counts> counts(static_cast<std::size_t>(options.threads));
     const auto render_rows = [&](int thread) {
         Counts own;
-        for (int y = thread; y < options.height; y += kThreads)
+        for (int y = thread; y < options.height; y += options.threads)
             for (int x = 0; x < options.width; ++x)
                 image.pixels[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] =
                     trace_pixel(scene, settled, x, y, own);
         counts[static_cast<std::size_t>(thread)] = own;
     };
-    std::thread other(render_rows, 1);
+    std::vector<std::thread> others;
+    for (int thread = 1; thread < options.threads; ++thread) others.emplace_back(render_rows, thread);
     render_rows(0);
-    other.join();
+    for (std::thread& other : others) other.join();
     for (const Counts& part : counts) add(image.counts, part);
     return image;
 }

@@ -14,7 +14,7 @@ namespace raya {
 struct RingCase {
     std::uint32_t width = 64, height = 48;
     std::uint32_t pes = 64, offset = 8;
-    std::string fold = "cyclic", machine = "grande";
+    std::string fold = "cyclic", machine = "grande", mapping = "cyclic";
     std::uint32_t lanes = 0, group = 0, bounces = 8;  // lanes, group 0: the device's own
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
@@ -26,7 +26,7 @@ struct RingCase {
 inline RingSettings settings_of(const RingCase& c) {
     RingSettings settings;
     settings.machine = machine_named(c.machine);
-    settings.mapping = make_mapping("cyclic", c.width, c.height, c.pes, c.offset, c.fold);
+    settings.mapping = make_mapping(c.mapping, c.width, c.height, c.pes, c.offset, c.fold);
     settings.bounces = c.bounces;
     settings.sampling = c.sampling;
     settings.antialias = c.antialias;

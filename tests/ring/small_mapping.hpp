@@ -13,7 +13,7 @@ inline std::uint32_t random_below(SplitMix& random, std::uint64_t end) {
     return static_cast<std::uint32_t>(random.next() % end);
 }
 
-/// Sides are 1..`largest_side`, PEs 1..W H.
+/// A slot mapping. Sides are 1..`largest_side`, PEs 1..W H.
 inline raya_mapping small_mapping(SplitMix& random, std::uint32_t largest_side) {
     const auto side = [&] { return random.next() % 8 == 0 ? 1 : 1 + random_below(random, largest_side); };
     const std::uint32_t width = side(), height = side(), pixels = width * height;
@@ -22,6 +22,36 @@ inline raya_mapping small_mapping(SplitMix& random, std::uint32_t largest_side) 
                                      std::max(1u, pixels - 1),         std::min(pixels, width + 1)};
     const std::uint32_t fold = random.next() % 2 ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC;
     return {width, height, choices[random_below(random, 6)], random_below(random, width), fold};
+}
+
+/// A divisor of `side`, each as often as any other.
+inline std::uint32_t random_divisor(SplitMix& random, std::uint32_t side) {
+    std::uint32_t divisor = 1 + random_below(random, side);
+    while (side % divisor) divisor = 1 + random_below(random, side);
+    return divisor;
+}
+
+/// The mapping turned into one of that kind, with a parameter at random. A grid may have lines or columns of PEs beyond
+/// the image's, as long as there are no more PEs than pixels.
+inline raya_mapping of_kind(SplitMix& random, raya_mapping m, std::uint32_t kind) {
+    const std::uint32_t pixels = m.width * m.height;
+    m.kind = kind;
+    if (kind > RAYA_FOLD_BLOCK) m.parameter = 0;
+    if (kind == RAYA_TILES) m.parameter = raya_pair(random_divisor(random, m.width), random_divisor(random, m.height));
+    if (kind == RAYA_RANDOM) m.parameter = static_cast<std::uint32_t>(random.next());
+    if (kind == RAYA_GRID) {
+        const std::uint32_t down = 1 + random_below(random, random.next() % 4 == 0 ? pixels : m.height);
+        const std::uint32_t across = 1 + random_below(random, pixels / down);
+        m.parameter = raya_pair(down, across);
+        m.pes = down * across;
+    }
+    return m;
+}
+
+/// A mapping of any kind.
+inline raya_mapping any_mapping(SplitMix& random, std::uint32_t largest_side) {
+    const raya_mapping m = small_mapping(random, largest_side);
+    return of_kind(random, m, random_below(random, RAYA_RANDOM + 1));
 }
 
 }  // namespace raya

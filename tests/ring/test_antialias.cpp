@@ -112,13 +112,13 @@ Image supersampled(const Image& plain, const Image& fine, const Image& mask, con
 }
 
 /// What the four new points of each pixel of the mask cost; 0 in the others.
-std::vector<float> supersampling_cost(const GreyImage& fine, const Image& mask, const RingCase& c) {
-    std::vector<float> cost;
+std::vector<std::uint64_t> supersampling_cost(const CostImage& fine, const Image& mask, const RingCase& c) {
+    std::vector<std::uint64_t> cost;
     for (int row = 0; row < mask.height; ++row)
         for (int column = 0; column < mask.width; ++column) {
-            float sum = 0;
+            std::uint64_t sum = 0;
             for (const auto& offset : offsets_of(c.antialias))
-                sum += fine.values[std::size_t((2 * row + 1 + offset[0]) * fine.width + 2 * column + 1 + offset[1])];
+                sum += fine.cycles[std::size_t((2 * row + 1 + offset[0]) * fine.width + 2 * column + 1 + offset[1])];
             cost.push_back(value_at(mask, row, column, 0) ? sum : 0);
         }
     return cost;
@@ -144,9 +144,9 @@ void check_supersampled(const RingResult& result, const RingResult& plain, const
     CHECK(unlike_values(result.image, supersampled(plain.image, fine.image, mask, c)) == 0);
     REQUIRE(result.phases.size() == 2);
     CHECK(result.phases[0].events == plain.all.events);
-    CHECK(result.phases[0].cost.values == plain.all.cost.values);
+    CHECK(result.phases[0].cost.cycles == plain.all.cost.cycles);
     CHECK(result.phases[1].events[RAYA_PRIMARY] == 4 * marked);
-    CHECK(result.phases[1].cost.values == supersampling_cost(fine.all.cost, mask, c));
+    CHECK(result.phases[1].cost.cycles == supersampling_cost(fine.all.cost, mask, c));
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ TEST_CASE("the ring's filter is the filter of the whole image", "[ring][antialia
             const RingResult result = render_case(session, c), &expected = plain.of(c);
             CHECK(unlike_values(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
             CHECK(result.all.events == expected.all.events);
-            CHECK(result.all.cost.values == expected.all.cost.values);
+            CHECK(result.all.cost.cycles == expected.all.cost.cycles);
             CHECK(result.phases.size() == 1);
             CHECK(result.mask.rgb.empty());
             rotations += result.communication.rotations;

@@ -22,7 +22,7 @@ RingResult render_case(Session& session, const RingCase& c) {
 struct Answer {
     std::string image, mask;
     std::vector<EventCounts> events;  // of each phase
-    std::vector<std::vector<float>> cost;
+    std::vector<std::vector<std::uint64_t>> cost;
     std::uint64_t recomputed;
     bool operator==(const Answer&) const = default;
 };
@@ -31,18 +31,17 @@ Answer answer_of(const RingResult& result) {
     Answer answer{pixel_hash(result.image), pixel_hash(result.mask), {}, {}, result.recomputed};
     for (const Phase& phase : result.phases) {
         answer.events.push_back(phase.events);
-        answer.cost.push_back(phase.cost.values);
+        answer.cost.push_back(phase.cost.cycles);
     }
     return answer;
 }
 
 /// The cost image's sum over each PE's pixels.
-std::vector<std::uint64_t> owners_cost(const GreyImage& cost, const raya_mapping& m) {
+std::vector<std::uint64_t> owners_cost(const CostImage& cost, const raya_mapping& m) {
     std::vector<std::uint64_t> loads(m.pes);
     for (std::uint32_t row = 0; row < m.height; ++row)
         for (std::uint32_t column = 0; column < m.width; ++column)
-            loads[raya_owner(m, row, column)] +=
-                static_cast<std::uint64_t>(cost.values[std::size_t{row} * m.width + column]);
+            loads[raya_owner(m, row, column)] += cost.cycles[std::size_t{row} * m.width + column];
     return loads;
 }
 
@@ -60,7 +59,7 @@ void check_phase(const Phase& phase, const raya_mapping& m) {
 void check_sums(const RingResult& result) {
     EventCounts events{};
     std::vector<std::uint64_t> loads(result.all.load.per_pe.size());
-    std::vector<float> cost(result.all.cost.values.size());
+    std::vector<std::uint64_t> cost(result.all.cost.cycles.size());
     for (const Phase& phase : result.phases) {
         const auto add = [](auto& to, const auto& from) {
             REQUIRE(to.size() == from.size());
@@ -68,11 +67,11 @@ void check_sums(const RingResult& result) {
         };
         add(events, phase.events);
         add(loads, phase.load.per_pe);
-        add(cost, phase.cost.values);
+        add(cost, phase.cost.cycles);
     }
     CHECK(result.all.events == events);
     CHECK(result.all.load.per_pe == loads);
-    CHECK(result.all.cost.values == cost);
+    CHECK(result.all.cost.cycles == cost);
 }
 
 /// Rotations send every PE's block of `band` pixels, 3 words each.

@@ -1,27 +1,23 @@
-// Every pixel has one owner, the formulas both ways agree, and neighbours lie where the paper says.
+// The slot mappings: every pixel has one owner, the formulas both ways agree, and neighbours lie where the paper says.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "error.hpp"
 #include "ring/mapping.hpp"
-#include "scene/split_mix.hpp"
+#include "ring/mapping_laws.hpp"
+#include "ring/small_mapping.hpp"
 
 using namespace raya;
-using Catch::Contains;
 
 namespace {
-
-std::uint32_t below(SplitMix& random, std::uint64_t end) { return static_cast<std::uint32_t>(random.next() % end); }
 
 /// The owner as the words of mapping.h define it, in signed numbers and without its formulas' shortcuts.
 std::int64_t defined_owner(const raya_mapping& m, std::int64_t row, std::int64_t column) {
     const std::int64_t width = m.width, height = m.height, pes = m.pes;
-    std::int64_t slot = (column - row * m.offset) % width;
+    std::int64_t slot = (column - row * m.parameter) % width;
     if (slot < 0) slot += width;
-    if (m.fold == RAYA_FOLD_CYCLIC) {
+    if (m.kind == RAYA_FOLD_CYCLIC) {
         if (pes <= width) return slot % pes;
         std::int64_t sharers = 0;  // of slot, slot + W, slot + 2 W, ...
         while (slot + sharers * width < pes && sharers < height) ++sharers;
@@ -29,38 +25,6 @@ std::int64_t defined_owner(const raya_mapping& m, std::int64_t row, std::int64_t
     }
     const std::int64_t first = slot * pes / width, end = (slot + 1) * pes / width;
     return pes <= width ? first : first + row * (end - first) / height;
-}
-
-/// A mapping of a small image, with every relation of P to W and H now and then.
-raya_mapping random_mapping(SplitMix& random) {
-    const std::uint32_t width = random.next() % 8 == 0 ? 1 : 1 + below(random, 40);
-    const std::uint32_t height = random.next() % 8 == 0 ? 1 : 1 + below(random, 40);
-    const std::uint32_t pixels = width * height;
-    const std::uint32_t choices[] = {1 + below(random, width),  width,
-                                     1 + below(random, pixels), pixels,
-                                     std::max(1u, pixels - 1),  std::min(pixels, width + 1)};
-    const std::uint32_t fold = random.next() % 2 ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC;
-    return {width, height, choices[below(random, 6)], below(random, width), fold};
-}
-
-/// How many pixels, of all that the PEs' shares list, lie outside the image, come twice, or have another owner.
-std::uint32_t strays(const raya_mapping& m, std::vector<std::uint32_t>& sizes) {
-    std::vector<bool> seen(std::size_t{m.width} * m.height);
-    std::uint32_t wrong = 0;
-    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
-        const raya_share share = raya_share_of(m, pe);
-        sizes.push_back(raya_share_size(share));
-        for (std::uint32_t k = 0; k < sizes.back(); ++k) {
-            const raya_pixel pixel = raya_pixel_of(m, share, k);
-            const bool inside = pixel.row < m.height && pixel.column < m.width;
-            const std::size_t at = std::size_t{pixel.row} * m.width + pixel.column;
-            const bool good = inside && !seen[at] && raya_owner(m, pixel.row, pixel.column) == pe &&
-                              defined_owner(m, pixel.row, pixel.column) == pe;
-            if (inside) seen[at] = true;
-            wrong += !good;
-        }
-    }
-    return wrong + static_cast<std::uint32_t>(std::count(seen.begin(), seen.end(), false));
 }
 
 std::uint32_t ceil_ratio(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
@@ -71,10 +35,11 @@ TEST_CASE("every pixel has exactly one owner, and shares are as even as the fold
     constexpr std::uint64_t kSeed = 1;
     SplitMix random(kSeed);
     for (int i = 0; i < 600; ++i) {
-        const raya_mapping m = random_mapping(random);
-        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.offset, m.fold);
+        const raya_mapping m = small_mapping(random, 40);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.parameter, m.kind);
         std::vector<std::uint32_t> sizes;
-        CHECK(strays(m, sizes) == 0);
+        const auto defined = [&](std::uint32_t row, std::uint32_t column) { return defined_owner(m, row, column); };
+        CHECK(strays(m, defined, sizes) == 0);
         const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
         CHECK(largest_share(m) == *most);
         if (m.pes <= m.width) {  // PEs own whole slots, of which they have W / P rounded down or up
@@ -91,11 +56,11 @@ TEST_CASE("with a PE for each column the cyclic mapping is the paper's", "[mappi
     constexpr std::uint64_t kSeed = 2;
     SplitMix random(kSeed);
     for (int i = 0; i < 100; ++i) {
-        raya_mapping m = random_mapping(random);
+        raya_mapping m = small_mapping(random, 40);
         if (i == 0) m = {256, 256, 256, 16, RAYA_FOLD_CYCLIC};
         m.pes = m.width;
-        const std::uint32_t w = m.width, p = m.offset;
-        CAPTURE(kSeed, i, w, m.height, p, m.fold);
+        const std::uint32_t w = m.width, p = m.parameter;
+        CAPTURE(kSeed, i, w, m.height, p, m.kind);
         std::uint32_t wrong = 0;
         for (std::uint32_t j = 0; j < m.height; ++j)
             for (std::uint32_t pe = 0; pe < w; ++pe) {
@@ -145,16 +110,12 @@ TEST_CASE("the largest images and arrays keep to the definition", "[mapping]") {
                 CAPTURE(kSeed, pes, offset, fold);
                 std::uint32_t wrong = 0;
                 for (int i = 0; i < 100; ++i) {
-                    const std::uint32_t edge = i < 4 ? kSide - 1 : below(random, kSide);  // the last row and column too
-                    const raya_pixel pixel{i % 2 ? edge : below(random, kSide), i % 2 ? below(random, kSide) : edge};
+                    const std::uint32_t edge =
+                        i < 4 ? kSide - 1 : random_below(random, kSide);  // the last row and column too
+                    const raya_pixel pixel{i % 2 ? edge : random_below(random, kSide),
+                                           i % 2 ? random_below(random, kSide) : edge};
                     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
-                    const raya_share s = raya_share_of(m, owner);
-                    const std::uint32_t slot = (pixel.column + kSide - pixel.row * offset % kSide) % kSide;
-                    const std::uint32_t k =
-                        (pixel.row - s.first_row) / s.row_step * s.slots + (slot - s.first_slot) / s.slot_step;
-                    const raya_pixel back = raya_pixel_of(m, s, k);
-                    wrong += defined_owner(m, pixel.row, pixel.column) != owner || k >= raya_share_size(s) ||
-                             back.row != pixel.row || back.column != pixel.column;
+                    wrong += defined_owner(m, pixel.row, pixel.column) != owner || !round_trip_holds(m, pixel);
                 }
                 CHECK(wrong == 0);
                 if (pes > 2'000'000 || offset > 1) continue;
@@ -162,27 +123,4 @@ TEST_CASE("the largest images and arrays keep to the definition", "[mapping]") {
                 for (std::uint32_t pe = 0; pe < pes; ++pe) sum += raya_share_size(raya_share_of(m, pe));
                 CHECK(sum == kPixels);
             }
-}
-
-TEST_CASE("mappings by name, and what is refused", "[mapping]") {
-    const raya_mapping m = make_mapping("cyclic", 320, 200, 64, 16, "block");
-    CHECK((m.width == 320 && m.height == 200 && m.pes == 64 && m.offset == 16 && m.fold == RAYA_FOLD_BLOCK));
-    CHECK(make_mapping("cyclic", 320, 200, 64'000, 319, "cyclic").fold == RAYA_FOLD_CYCLIC);
-    CHECK(make_mapping("column", 320, 200, 64, 16, "cyclic").offset == 0);
-    CHECK(make_mapping("cyclic", 16'384, 16'384, 268'435'456, 0, "cyclic").pes == 268'435'456);
-
-    const auto refuses = [](const std::string& name, std::uint32_t width, std::uint32_t height, std::uint32_t pes,
-                            std::uint32_t offset, const std::string& fold, const auto& message) {
-        CHECK_THROWS_AS(make_mapping(name, width, height, pes, offset, fold), UserError);
-        CHECK_THROWS_WITH(make_mapping(name, width, height, pes, offset, fold), message);
-    };
-    refuses("spiral", 8, 8, 8, 0, "cyclic", Contains("--mapping spiral") && Contains("cyclic, column"));
-    refuses("cyclic", 8, 8, 8, 0, "none", Contains("--fold none") && Contains("cyclic or block"));
-    refuses("cyclic", 0, 8, 1, 0, "cyclic", Contains("--size 0x8") && Contains("1..16384"));
-    refuses("cyclic", 8, 0, 1, 0, "cyclic", Contains("--size 8x0") && Contains("1..16384"));
-    refuses("cyclic", 16'385, 8, 8, 0, "cyclic", Contains("--size 16385x8"));
-    refuses("cyclic", 65'536, 65'536, 8, 0, "cyclic", Contains("--size 65536x65536"));  // W H overflows 32 bits
-    refuses("cyclic", 8, 6, 0, 0, "cyclic", Contains("--pes 0") && Contains("1..48"));
-    refuses("cyclic", 8, 6, 49, 0, "cyclic", Contains("--pes 49") && Contains("1..48"));
-    refuses("cyclic", 8, 6, 8, 8, "cyclic", Contains("--offset 8") && Contains("0..7"));
 }

@@ -74,6 +74,39 @@ TEST_CASE("PEs, offset, fold and machine change no bit of the image and no count
             }
 }
 
+TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed or not", "[ring]") {
+    const Scene scene = mixed_scene();
+    const auto method = GENERATE(AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample);
+    RingCase c{.width = 24, .height = 18, .pes = 1, .offset = 0};
+    c.antialias.method = method;
+    c.group = 1;
+    const Answer expected = answer_of(render_scene(scene, c));
+    struct Row {
+        const char* mapping;
+        std::uint32_t pes,
+            supersampled_in;  // smoothed: in groups of so many by supersampling, of the other number by the filter
+    };
+    // where PEs outnumber lines or tiles, some are idle
+    const Row rows[] = {{"rows", 5, 1},      {"rows", 40, 4},       {"blocks", 5, 4},    {"blocks", 40, 1},
+                        {"grid:3x4", 12, 4}, {"grid:20x5", 100, 1}, {"tiles:6x3", 7, 1}, {"tiles:8x9", 40, 4},
+                        {"random:7", 13, 1}, {"random", 432, 4}};
+    for (const Row& row : rows)
+        for (const std::uint32_t group : {1u, 4u}) {
+            const bool smoothed = method != AntialiasMethod::kNone;
+            if (smoothed && (group == row.supersampled_in) == (method == AntialiasMethod::kFilter)) continue;
+            c.mapping = row.mapping;
+            c.pes = row.pes;
+            c.group = group;
+            CAPTURE(antialias_name(method), c.mapping, c.pes, group);
+            if (smoothed && parse_mapping(c.mapping).kind == RAYA_RANDOM)
+                CHECK_THROWS_WITH(
+                    render_scene(scene, c),
+                    Catch::Contains("--mapping random") && Catch::Contains("neighbours live on PEs all over the ring"));
+            else
+                CHECK(answer_of(render_scene(scene, c)) == expected);
+        }
+}
+
 TEST_CASE("any image size is traced whole, whatever is left over for the last lane", "[ring]") {
     const Scene scene = project_scene("glass");
     const std::uint32_t seed = 20251;

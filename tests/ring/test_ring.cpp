@@ -172,9 +172,9 @@ TEST_CASE("an exchange brings every band from every distance once, and turns as 
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (int i = 0; i < 100; ++i) {
-        const raya_mapping m = small_mapping(random, 8);
+        const raya_mapping m = any_mapping(random, 8);
         const std::uint32_t capacity = largest_share(m), band = 1 + random_below(random, capacity);
-        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.offset, m.fold, capacity, band);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind, capacity, band);
         const Bits mine = random_words(random, std::size_t{m.pes} * capacity * 3);
         const Buffer<float> own = filled(session, "own", mine);
         Communication counted;

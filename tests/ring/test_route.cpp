@@ -121,8 +121,8 @@ TEST_CASE("the distances are those of the pixels' neighbours", "[ring][route]") 
     constexpr std::uint64_t kSeed = 5;
     SplitMix random(kSeed);
     for (int i = 0; i < 600; ++i) {
-        const raya_mapping m = small_mapping(random, 14);
-        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.offset, m.fold);
+        const raya_mapping m = any_mapping(random, 14);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind);
         for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
             CAPTURE(side);
             CHECK(neighbour_distances(m, side) == defined_distances(m, side));
@@ -136,8 +136,8 @@ TEST_CASE("where a PE owns whole columns there is one distance a side, the paper
     for (int i = 0; i < 300; ++i) {
         raya_mapping m = small_mapping(random, 30);
         m.pes = m.width;
-        const std::uint32_t pes = m.pes, p = m.offset;
-        CAPTURE(kSeed, i, m.width, m.height, p, m.fold);
+        const std::uint32_t pes = m.pes, p = m.parameter;
+        CAPTURE(kSeed, i, m.width, m.height, p, m.kind);
         const bool beside = m.width > 1, over = m.height > 1;
         CHECK(neighbour_distances(m, RAYA_LEFT) == (beside ? Distances{pes - 1} : Distances{}));
         CHECK(neighbour_distances(m, RAYA_RIGHT) == (beside ? Distances{1} : Distances{}));

@@ -227,12 +227,12 @@ TEST_CASE("the header holds settings, background and sizes", "[packer]") {
     Scene scene = patch_scene();
     scene.background = {0.1, 0.2, 0.3};
     JobSettings settings = settings_for(32, 24);
-    settings.mapping.offset = 7;
+    settings.mapping.parameter = 7;
     settings.bounces = 3;
     for (std::uint32_t i = 0; i < RAYA_EVENTS; ++i) settings.cycles[i] = 100 + i;
     raya_job job = PackedScene(pack_job(scene, settings).words).job();
     CHECK((job.mapping.width == 32 && job.mapping.height == 24 && job.mapping.pes == 5));
-    CHECK((job.mapping.offset == 7 && job.mapping.fold == RAYA_FOLD_BLOCK));
+    CHECK((job.mapping.parameter == 7 && job.mapping.kind == RAYA_FOLD_BLOCK));
     CHECK(job.bounces == 3);
     CHECK(std::equal(settings.cycles.begin(), settings.cycles.end(), job.cycles));
     CHECK(Vec3(job.eye[0], job.eye[1], job.eye[2]) == Vec3(0, 0, -5));

@@ -85,8 +85,8 @@ TEST_CASE("the three files of a formats study are complete and agree", "[study]"
 
 TEST_CASE("a study that there is not, or none, is refused with those that there are", "[study]") {
     const ScratchFolder outputs;
-    check_refused(outputs, {"study", "speed", "-o", outputs / "x"}, 2, {"no study 'speed'", "there are formats"});
-    check_refused(outputs, {"study"}, 2, {"name one of formats"});
+    check_refused(outputs, {"study", "speed", "-o", outputs / "x"}, 2, {"no study 'speed'", "there are fig7"});
+    check_refused(outputs, {"study"}, 2, {"name one of fig7"});
     CHECK_THAT(run_raya({"study", "--help"}).out,
                Catch::Contains("raya study [OPTIONS] [NAME]") && Catch::Contains("formats"));
 }

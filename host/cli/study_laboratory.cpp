@@ -1,0 +1,103 @@
+// raya study NAME [SCENE...] -o DIR: the load laboratory; `all` writes every study and an index page that tells the
+// story.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "cli/parse.hpp"
+#include "cli/studies.hpp"
+#include "error.hpp"
+#include "report/progress.hpp"
+#include "report/whole_file.hpp"
+#include "scene/nff_reader.hpp"
+#include "study/page_writer.hpp"
+#include "study/studies.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LaboratoryCommand {
+    std::string folder, size, device;
+    std::vector<std::string> scenes;
+};
+
+std::uint32_t side_of(const LaboratoryCommand& command) {
+    if (command.size.empty()) return 0;
+    const std::vector<std::uint32_t> size = parse_image_size(command.size);
+    if (size[0] != size[1]) throw UserError(fmt::format("--size {}: the studies take square images", command.size));
+    constexpr std::uint32_t kSmallest = 16, kLargest = 4096;
+    if (size[0] < kSmallest || size[0] > kLargest)
+        throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", command.size, kSmallest, kLargest));
+    return size[0];
+}
+
+std::vector<LabelledScene> named_scenes(const LaboratoryCommand& command) {
+    std::vector<LabelledScene> scenes;
+    for (const std::string& file : command.scenes) scenes.push_back({file, read_nff(file)});
+    return scenes;
+}
+
+void print_page(const StudyPage& page, const PlotOutcome& plots, const fs::path& folder) {
+    fmt::print("{}\n", page.title);
+    for (const Comparison& c : page.comparisons) {
+        fmt::print("  {:<34} {:>12.5g} {:<4}", c.what, c.ours, c.unit);
+        if (c.paper) fmt::print(" paper {:.5g}, ratio {:.3f}", *c.paper, c.ours / *c.paper);
+        fmt::print("{}\n", c.remark.empty() ? "" : "  (" + c.remark + ")");
+    }
+    for (const std::string& finding : page.findings) fmt::print("  {}\n", finding);
+    if (!plots.drawn) fmt::print("  no plots: {}\n", plots.reason);
+    fmt::print("  {}\n", (folder / (page.name + ".md")).string());
+}
+
+void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted) {
+    const std::uint32_t side = side_of(command);
+    const std::vector<LabelledScene> scenes = named_scenes(command);
+    std::vector<std::string> files;
+    for (const Study& study : wanted)
+        for (const char* end : {".md", ".json"}) files.push_back(study.name + end);
+    if (wanted.size() > 1) files.emplace_back("index.md");
+    prepare_folder(command.folder, files);
+    Session session(choose_device(command.device));
+    Laboratory laboratory(session, side);
+    std::vector<StudyPage> pages;
+    for (const Study& study : wanted) {
+        pages.push_back(study.run(laboratory, scenes));
+        print_page(pages.back(), write_page(command.folder, pages.back()), command.folder);
+    }
+    if (wanted.size() > 1) {
+        write_index(command.folder, pages);
+        fmt::print("{}\n", (fs::path(command.folder) / "index.md").string());
+    }
+}
+
+void add_study(CLI::App& parent, const std::string& name, const std::string& summary, std::span<const Study> wanted) {
+    CLI::App* command = parent.add_subcommand(name, summary);
+    const auto options = std::make_shared<LaboratoryCommand>();
+    command->add_option("-o,--output", options->folder, "Folder for Markdown, CSV, JSON and plots; made if missing")
+        ->required()
+        ->type_name("DIR");
+    command->add_option("SCENE", options->scenes, "Scenes in NFF; default: the study's own")->type_name("SCENE.nff");
+    command
+        ->add_option("--size", options->size, "Image size in pixels a side, 16..4096; default: the study's, mostly 256")
+        ->type_name("N");
+    command
+        ->add_option("--device", options->device,
+                     "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
+                     "GPU, else the first CPU")
+        ->type_name("NAME");
+    refuse_odd_values(*command);
+    command->callback([options, wanted] { run_studies(*options, wanted); });
+}
+
+}  // namespace
+
+void add_laboratory_studies(CLI::App& study) {
+    for (const Study& one : studies()) add_study(study, one.name, one.summary, {&one, 1});
+    add_study(study, "all", "All studies of the load laboratory, and a page that tells the story in order", studies());
+}
+
+}  // namespace raya

@@ -1,0 +1,217 @@
+#include "ring/schedule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <queue>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "error.hpp"
+
+namespace raya {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw UserError(
+        fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD] or hybrid:CHUNK[,OVERHEAD[,SHARE]] with "
+                    "CHUNK 1..{} pixels a request, OVERHEAD 0..{} cycles a request, SHARE 0..1 of a PE's own "
+                    "pixels to start with",
+                    text, kLargestChunk, kLargestOverhead));
+}
+
+/// All of `field` as a number; from_chars does not depend on the locale.
+template <typename Number>
+bool read_number(std::string_view field, Number& number) {
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+    return error == std::errc{} && end == field.data() + field.size();
+}
+
+bool is_share(double share) { return !std::signbit(share) && share <= 1; }  // no NaN, no -0
+
+bool is_plan(const DynamicPlan& plan) {
+    return plan.chunk >= 1 && plan.chunk <= kLargestChunk && plan.overhead <= kLargestOverhead &&
+           is_share(plan.static_share);
+}
+
+std::vector<std::string_view> split_at_commas(std::string_view text) {
+    std::vector<std::string_view> fields;
+    for (std::size_t at = 0; at != std::string_view::npos;) {
+        const std::size_t comma = text.find(',', at);
+        fields.push_back(text.substr(at, comma - at));
+        at = comma == std::string_view::npos ? comma : comma + 1;
+    }
+    return fields;
+}
+
+void check_image(const CostImage& image, std::uint32_t pes) {
+    const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
+    if (pixels == 0 || image.cycles.size() != pixels)
+        throw std::invalid_argument("a cost image must have one cost for each pixel, and a pixel");
+    if (pes < 1 || pes > pixels) throw std::invalid_argument("P must be 1..W H");
+}
+
+void check_mapping(const CostImage& image, const raya_mapping& mapping) {
+    check_image(image, mapping.pes);
+    if (mapping.width != image.width || mapping.height != image.height)
+        throw std::invalid_argument("the mapping is of another size than the cost image");
+}
+
+/// The owner of each pixel of the image that is not sheared (offset 0), in which column and slot are the same.
+std::vector<std::uint32_t> owners_of_slots(const raya_mapping& unsheared) {
+    std::vector<std::uint32_t> owners;
+    owners.reserve(std::size_t{unsheared.width} * unsheared.height);
+    for (std::uint32_t row = 0; row < unsheared.height; ++row)
+        for (std::uint32_t slot = 0; slot < unsheared.width; ++slot) owners.push_back(raya_owner(unsheared, row, slot));
+    return owners;
+}
+
+/// The loads of the PEs under an offset.
+void add_sheared(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
+                 std::vector<std::uint64_t>& per_pe) {
+    const std::uint64_t* costs = image.cycles.data();
+    const std::uint32_t* owner = owners.data();
+    std::uint64_t first = 0;  // column of the row's slot 0: row x offset mod W
+    for (std::uint32_t row = 0; row < image.height; ++row) {
+        for (std::uint64_t column = first; column < image.width; ++column) per_pe[*owner++] += costs[column];
+        for (std::uint64_t column = 0; column < first; ++column) per_pe[*owner++] += costs[column];
+        costs += image.width;
+        first += offset;
+        if (first >= image.width) first -= image.width;
+    }
+}
+
+/// Does what each PE starts with: adds its costs to `busy` and marks its pixels as done.
+std::vector<bool> do_static_part(const CostImage& image, const raya_mapping& start, double share,
+                                 std::vector<std::uint64_t>& busy) {
+    std::vector<bool> done(image.cycles.size());
+    if (share == 0) return done;
+    for (std::uint32_t pe = 0; pe < start.pes; ++pe) {
+        const raya_share own = raya_share_of(start, pe);
+        const auto pixels = static_cast<std::uint32_t>(share * raya_share_size(own));
+        for (std::uint32_t k = 0; k < pixels; ++k) {
+            const raya_pixel pixel = raya_pixel_of(start, own, k);
+            const std::size_t at = std::size_t{pixel.row} * image.width + pixel.column;
+            busy[pe] += image.cycles[at];
+            done[at] = true;
+        }
+    }
+    return done;
+}
+
+/// Cost of each chunk of the pixels that are not done, requests not included.
+std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<bool>& done, std::uint32_t chunk) {
+    std::vector<std::uint64_t> chunks;
+    std::uint32_t room = 0;  // pixels for which the last chunk still has room
+    for (std::size_t at = 0; at < done.size(); ++at) {
+        if (done[at]) continue;
+        if (room == 0) {
+            chunks.push_back(0);
+            room = chunk;
+        }
+        chunks.back() += image.cycles[at];
+        --room;
+    }
+    return chunks;
+}
+
+/// Hands the chunks out to PEs that have been busy for a while each, and leaves in `busy` when they have finished.
+void hand_out(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, std::vector<std::uint64_t>& busy) {
+    using Free = std::pair<std::uint64_t, std::uint32_t>;  // since when, and which PE: of equals the lowest comes first
+    std::vector<Free> all;
+    all.reserve(busy.size());
+    for (std::uint32_t pe = 0; pe < busy.size(); ++pe) all.emplace_back(busy[pe], pe);
+    std::priority_queue<Free, std::vector<Free>, std::greater<>> idle(std::greater<>{}, std::move(all));
+    for (const std::uint64_t cost : chunks) {
+        const std::uint32_t pe = idle.top().second;
+        idle.pop();
+        idle.emplace(busy[pe] += overhead + cost, pe);
+    }
+}
+
+}  // namespace
+
+DynamicPlan parse_dynamic(const std::string& text) {
+    const std::string_view view = text;
+    const bool hybrid = view.starts_with("hybrid:");
+    if (!hybrid && !view.starts_with("dynamic:")) refuse(text);
+    const auto fields = split_at_commas(view.substr(view.find(':') + 1));
+    DynamicPlan plan;
+    if (hybrid) plan.static_share = 0.5;
+    const bool good = fields.size() <= (hybrid ? 3 : 2) && read_number(fields[0], plan.chunk) &&
+                      (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
+                      (fields.size() < 3 || read_number(fields[2], plan.static_share));
+    if (!good || !is_plan(plan)) refuse(text);
+    return plan;
+}
+
+std::string dynamic_text(const DynamicPlan& plan) {
+    if (plan.static_share > 0) return fmt::format("hybrid:{},{},{}", plan.chunk, plan.overhead, plan.static_share);
+    return plan.overhead > 0 ? fmt::format("dynamic:{},{}", plan.chunk, plan.overhead)
+                             : fmt::format("dynamic:{}", plan.chunk);
+}
+
+Load static_load(const CostImage& image, const raya_mapping& mapping) {
+    check_mapping(image, mapping);
+    std::vector<std::uint64_t> per_pe(mapping.pes);
+    std::size_t at = 0;
+    for (std::uint32_t row = 0; row < image.height; ++row)
+        for (std::uint32_t column = 0; column < image.width; ++column)
+            per_pe[raya_owner(mapping, row, column)] += image.cycles[at++];
+    return load_of(std::move(per_pe));
+}
+
+std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t pes, std::uint32_t fold,
+                                         const std::vector<std::uint32_t>& offsets) {
+    check_image(image, pes);
+    if (fold != RAYA_FOLD_CYCLIC && fold != RAYA_FOLD_BLOCK)
+        throw std::invalid_argument("the fold must be one of RAYA_FOLD_*: other mappings have no offset");
+    const auto owners = owners_of_slots({image.width, image.height, pes, 0, fold});
+    std::vector<double> imbalances;
+    std::vector<std::uint64_t> per_pe;
+    for (const std::uint32_t offset : offsets) {
+        if (offset >= image.width) throw std::invalid_argument("an offset must be 0..W-1");
+        per_pe.assign(pes, 0);
+        add_sheared(image, owners, offset, per_pe);
+        Load load = load_of(std::move(per_pe));
+        imbalances.push_back(load.imbalance);
+        per_pe = std::move(load.per_pe);  // its memory serves the next offset
+    }
+    return imbalances;
+}
+
+Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan) {
+    check_mapping(image, start);
+    if (!is_plan(plan)) throw std::invalid_argument("a plan's chunk, overhead or static share is out of its range");
+    std::vector<std::uint64_t> busy(start.pes);
+    const auto done = do_static_part(image, start, plan.static_share, busy);
+    const auto chunks = chunks_of(image, done, plan.chunk);
+    hand_out(chunks, plan.overhead, busy);
+    return {load_of(std::move(busy)), chunks.size()};
+}
+
+std::uint64_t total_cycles(const CostImage& image) {
+    return std::accumulate(image.cycles.begin(), image.cycles.end(), std::uint64_t{0});
+}
+
+std::uint64_t makespan(const Schedule& schedule) { return schedule.load.max; }
+
+double speedup(const Schedule& schedule, const CostImage& image) {
+    if (makespan(schedule) == 0) return static_cast<double>(schedule.load.per_pe.size());
+    return static_cast<double>(total_cycles(image)) / static_cast<double>(makespan(schedule));
+}
+
+std::uint64_t lower_bound(const CostImage& image, std::uint32_t pes) {
+    check_image(image, pes);
+    const std::uint64_t total = total_cycles(image);
+    const std::uint64_t even = total / pes + (total % pes != 0);
+    return std::max(even, *std::max_element(image.cycles.begin(), image.cycles.end()));
+}
+
+}  // namespace raya

@@ -1,0 +1,76 @@
+// Loads from a cost image: of static mappings, and of dynamic distribution, whose run is simulated.
+//
+// Dynamic distribution is list scheduling (R. L. Graham, "Bounds for Certain Multiprocessing Anomalies", 1966): the
+// rest of the image lies in a queue at the root, cut into chunks in scan-line order, and the PE that is free first
+// takes the next one. What the model leaves out: the root answers at once, so requests of many PEs at a time do not
+// wait for each other, nor for the link; a request costs its PE always the same; a PE asks when it is done, not
+// earlier; the last answer, "no more", costs nothing. Results are on their way while the next chunk is computed.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "report/load.hpp"
+#include "ring/cost_image.hpp"
+#include "ring/mapping.hpp"
+
+namespace raya {
+
+inline constexpr std::uint32_t kLargestChunk = kLargestSide * kLargestSide;  // pixels: the largest image
+inline constexpr std::uint64_t kLargestOverhead = 1'000'000'000;  // cycles; times the largest image below 2^58
+
+/// How pixels are handed out while the machine runs.
+struct DynamicPlan {
+    std::uint32_t chunk = 1;     // pixels a request, 1..kLargestChunk
+    std::uint64_t overhead = 0;  // cycles that a PE spends on a request, 0..kLargestOverhead
+    double static_share = 0;     // 0..1 of each PE's own pixels that it starts with, unasked; above 0 it is a hybrid
+
+    bool operator==(const DynamicPlan&) const = default;
+};
+
+/// "dynamic:chunk[,overhead]" or "hybrid:chunk[,overhead[,share]]"; overhead 0 and share 0.5 where absent.
+/// Throws UserError with the value of --mapping and what is legal.
+DynamicPlan parse_dynamic(const std::string& text);
+
+/// The text that parse_dynamic() reads as this plan; a hybrid's with all its figures.
+std::string dynamic_text(const DynamicPlan& plan);
+
+/// A run that has been simulated. A PE never waits before its last pixel, so the time at which it has finished is also
+/// the time that it has been busy: `load` is of pixels and requests together.
+struct Schedule {
+    Load load;                   // finishing time of each PE, cycles. Its speedup is sum / max of busy times, overhead
+                                 // included: how evenly PEs are busy, not what the run gains; for that see speedup()
+    std::uint64_t requests = 0;  // that were answered with pixels
+};
+
+// Functions of a cost image throw std::invalid_argument where cycles.size() is not W H, where the mapping is of another
+// size, for P outside 1..W H, and for a plan's figure, an offset or a fold of their own that is out of its range.
+
+/// The load of a static mapping: a PE's load is the sum of its pixels' costs.
+Load static_load(const CostImage& image, const raya_mapping& mapping);
+
+/// static_load(...).imbalance for the same PEs and fold (RAYA_FOLD_*) and each of the offsets, much faster: the owner
+/// is asked for once a pixel, not once a pixel and offset.
+std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t pes, std::uint32_t fold,
+                                         const std::vector<std::uint32_t>& offsets);
+
+/// Each PE first does the first floor(static_share x size) pixels of its share under `start`, in the share's order. All
+/// other pixels in scan-line order make the chunks, the last of which may be smaller; the PE that is free first, of
+/// equals the lowest number, takes the next, pays the overhead, then the pixels' costs. With a share of 0 only the size
+/// and the PEs of `start` matter, with 1 it is static_load(). Takes O(pixels + P + chunks log P).
+Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan);
+
+/// The pure work: the sum of all pixels' costs.
+std::uint64_t total_cycles(const CostImage& image);
+
+/// When the last PE has finished, cycles.
+std::uint64_t makespan(const Schedule& schedule);
+
+/// The pure work / makespan: how many times faster than one PE that has all pixels and asks nobody. Overhead counts as
+/// time and not as work, so it is at most Schedule::load.speedup. P where the makespan is 0, as in Load.
+double speedup(const Schedule& schedule, const CostImage& image);
+
+/// No distribution of whole pixels over P PEs finishes earlier: max(ceil(total / P), largest pixel), cycles.
+std::uint64_t lower_bound(const CostImage& image, std::uint32_t pes);
+
+}  // namespace raya

@@ -1,0 +1,47 @@
+#include "study/laboratory.hpp"
+
+#include "ring/mapping.hpp"
+#include "ring/ring_renderer.hpp"
+#include "scene/packer.hpp"
+
+namespace raya {
+namespace {
+
+Costs render_costs(Session& session, const LabelledScene& scene, std::uint32_t size, AntialiasMethod method) {
+    RingSettings settings;
+    settings.machine = machine_named("grande");
+    settings.format = format_for(scene.scene);
+    settings.bounces = machine_named("spa").bounces;
+    settings.mapping = make_mapping("cyclic", size, size, size, 16 % size, "cyclic");
+    settings.antialias.method = method;
+    RingResult result = RingRenderer(session, scene.scene, settings).render();
+    Costs costs;
+    costs.label = scene.label;
+    costs.trace = std::move(result.phases.front().cost);
+    if (method == AntialiasMethod::kSupersample) costs.supersample = std::move(result.phases.back().cost);
+    costs.events = result.phases.front().events;
+    costs.objects = scene.scene.object_count();
+    costs.job_words = result.pe_memory.job_words;
+    costs.recomputed = result.recomputed;
+    costs.device_s = trace_seconds(result);
+    return costs;
+}
+
+}  // namespace
+
+NumberFormat format_for(const Scene& scene) {
+    const Machine& spa = machine_named("spa");
+    const JobSettings smallest{make_mapping("cyclic", 1, 1, 1, 0, "cyclic"), Sampling::kCentres, spa.bounces,
+                               cycles_of_events(), spa.format};
+    return 4 * pack_job(scene, smallest).words.size() <= spa.pe_memory_bytes.value() ? spa.format : NumberFormat{};
+}
+
+const Costs& Laboratory::costs(const LabelledScene& scene, std::uint32_t size, AntialiasMethod method) {
+    std::unique_ptr<Costs>& known = known_[{scene.label, size, method}];
+    if (!known) known = std::make_unique<Costs>(render_costs(session_, scene, size, method));
+    return *known;
+}
+
+double spa_ms(double cycles) { return cycles * machine_named("spa").cycle_ns.value() * 1e-6; }
+
+}  // namespace raya

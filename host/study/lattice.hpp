@@ -1,0 +1,35 @@
+// The pixels of one PE as a lattice, and whether a good lattice is a good offset.
+//
+// Where there is a PE for each of N columns, the PE of pixel (j, x) also has (j + a, x + b) wherever b = a p mod N: a
+// lattice. Its shortest vector is the least distance between two pixels of one PE. Distances are those in the image,
+// without wrapping round its sides; on the torus of N x N pixels they would be the same, since the lattice has the
+// period N both ways and every vector shorter than N joins two pixels of some PE.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "study/laboratory.hpp"
+#include "study/page.hpp"
+
+namespace raya {
+
+/// Square of the length of the shortest vector, pixels; `side` N 1 or more, `offset` below it.
+std::uint64_t shortest_square(std::uint32_t offset, std::uint32_t side);
+
+/// Offsets above `reference` whose shortest vector is longer than its own, and those where it is as long. The mirror of
+/// the reference, side - reference, is in neither: the same lattice seen in a mirror.
+struct SpreadOffsets {
+    std::vector<std::uint32_t> longer, as_long;
+};
+SpreadOffsets well_spread_offsets(std::uint32_t side, std::uint32_t reference);
+
+/// Rank of each value, 1 for the least; equal ones share the mean of their ranks.
+std::vector<double> ranks_of(const std::vector<double>& values);
+
+/// Spearman's correlation, of the ranks: -1..1, 0 where all values of either are equal.
+double rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
+
+/// `scenes`: square images of one size, 16 pixels a side or more, one at least.
+StudyPage lattice_page(const std::vector<const Costs*>& scenes);
+
+}  // namespace raya

@@ -1,0 +1,56 @@
+#include "study/measured.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <vector>
+
+#include "reference/reference.hpp"
+#include "ring/mapping.hpp"
+#include "ring/ring_renderer.hpp"
+
+namespace raya {
+namespace {
+
+constexpr int kReferenceRuns = 3, kDeviceRuns = 5;
+constexpr double kEnoughS = 10;  // of measuring: a large scene is not rendered again
+
+double median_of(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t middle = values.size() / 2;
+    return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+}  // namespace
+
+Measured measure(int runs, double enough_s, const std::function<double()>& seconds) {
+    std::vector<double> all = {seconds()};
+    while (static_cast<int>(all.size()) < runs && std::accumulate(all.begin(), all.end(), 0.0) < enough_s)
+        all.push_back(seconds());
+    return {1e3 * *std::min_element(all.begin(), all.end()), 1e3 * median_of(all), static_cast<int>(all.size())};
+}
+
+Measured measure_reference(const LabelledScene& scene, std::uint32_t size) {
+    using Clock = std::chrono::steady_clock;
+    const reference::Options options{.width = static_cast<int>(size),
+                                     .height = static_cast<int>(size),
+                                     .bounces = static_cast<int>(machine_named("spa").bounces),
+                                     .threads = 1};
+    return measure(kReferenceRuns, kEnoughS, [&] {
+        const Clock::time_point start = Clock::now();
+        reference::render(scene.scene, options);
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    });
+}
+
+Measured measure_device(Session& session, const LabelledScene& scene, std::uint32_t size, const NumberFormat& format) {
+    RingSettings settings;
+    settings.machine = machine_named("grande");
+    settings.format = format;
+    settings.bounces = machine_named("spa").bounces;
+    settings.mapping = make_mapping("cyclic", size, size, size, 16 % size, "cyclic");
+    RingRenderer renderer(session, scene.scene, settings);
+    return measure(kDeviceRuns, kEnoughS, [&] { return trace_seconds(renderer.render()); });
+}
+
+}  // namespace raya

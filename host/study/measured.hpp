@@ -1,0 +1,26 @@
+// What this machine takes for the same image: measured, not modelled.
+#pragma once
+#include <cstdint>
+#include <functional>
+
+#include "cl/commands.hpp"
+#include "machine/number_format.hpp"
+#include "study/scenes.hpp"
+
+namespace raya {
+
+struct Measured {
+    double min_ms = 0, median_ms = 0;
+    int runs = 0;
+};
+
+/// Of the seconds that up to `runs` calls tell, one at least; no further call once `enough_s` seconds of them are told.
+Measured measure(int runs, double enough_s, const std::function<double()>& seconds);
+
+/// The double-precision reference on one thread; up to three runs.
+Measured measure_reference(const LabelledScene& scene, std::uint32_t size);
+
+/// The kernels on the session's device, in a format; their time alone, up to five runs.
+Measured measure_device(Session& session, const LabelledScene& scene, std::uint32_t size, const NumberFormat& format);
+
+}  // namespace raya

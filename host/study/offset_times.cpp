@@ -1,0 +1,80 @@
+#include "study/offset_times.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "ring/mapping.hpp"
+#include "ring/route.hpp"
+#include "ring/schedule.hpp"
+#include "study/spa_times.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint64_t kPixelWords = 3;
+
+// Load of the busiest PE, for each offset.
+std::vector<double> largest_loads_ms(const CostImage& image, std::uint32_t pes,
+                                     const std::vector<std::uint32_t>& offsets) {
+    const double mean = static_cast<double>(total_cycles(image)) / pes;
+    std::vector<double> loads = imbalance_of_offsets(image, pes, RAYA_FOLD_CYCLIC, offsets);
+    for (double& load : loads) load = spa_ms(mean * (1 + load));
+    return loads;
+}
+
+}  // namespace
+
+std::uint64_t neighbour_rotations(const raya_mapping& mapping) {
+    raya_mapping short_one = mapping;
+    // With slots of which no two PEs share one, the owner follows from the slot alone, and two rows show all pairs of
+    // neighbouring slots that any number of rows does: for p > 0 their left borders lie in two slots, for p = 0 all in
+    // one.
+    if (raya_has_slots(mapping) && mapping.pes <= mapping.width) short_one.height = std::min(mapping.height, 2u);
+    std::uint64_t turns = 0;
+    for (raya_u32 side = 0; side < RAYA_SIDES; ++side)
+        for (const Leg& leg : shortest_route(mapping.pes, neighbour_distances(short_one, side))) turns += leg.turns();
+    return turns;
+}
+
+std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, AntialiasMethod method) {
+    const std::uint32_t width = costs.trace.width, height = costs.trace.height;
+    std::vector<std::uint32_t> offsets(width);
+    std::iota(offsets.begin(), offsets.end(), 0u);
+    const Machine& spa = machine_named("spa");
+    const std::vector<double> trace = largest_loads_ms(costs.trace, pes, offsets);
+    std::vector<double> supersample(width);
+    if (method == AntialiasMethod::kSupersample) supersample = largest_loads_ms(costs.supersample, pes, offsets);
+    std::vector<OffsetTime> times;
+    for (const std::uint32_t p : offsets) {
+        const raya_mapping mapping = make_mapping("cyclic", width, height, pes, p, "cyclic");
+        OffsetTime time{.trace_ms = trace[p], .supersample_ms = supersample[p]};
+        if (method != AntialiasMethod::kNone) {
+            const std::uint32_t share = largest_share(mapping);
+            const SmoothingCycles cycles = smoothing_cycles(method, share);
+            time.smooth_ms = spa_ms(static_cast<double>(cycles.filter + cycles.compare));
+            time.rotations = neighbour_rotations(mapping);
+            const double words_ms = 1e3 * static_cast<double>(kPixelWords * share) / spa.link_words_per_s.value();
+            time.ring_ms = static_cast<double>(time.rotations) * (spa.rotation_sync_ms.value() + words_ms);
+        }
+        times.push_back(time);
+    }
+    return times;
+}
+
+std::uint32_t usual_size(const Scene& scene) {
+    constexpr std::uint64_t kMostTests = 1u << 30;  // pixels x objects
+    constexpr std::uint32_t kOther = 256, kLeast = 64;
+    const bool square = scene.view.width == scene.view.height && scene.view.width >= 16 && scene.view.width <= 4096;
+    std::uint32_t size = square ? static_cast<std::uint32_t>(scene.view.width) : kOther;
+    while (size / 2 >= kLeast && std::uint64_t{size} * size * scene.object_count() > kMostTests) size /= 2;
+    return size;
+}
+
+std::uint32_t best_offset_of(const std::vector<OffsetTime>& times, std::size_t count) {
+    const auto end = times.begin() + static_cast<std::ptrdiff_t>(std::min(count, times.size()));
+    const auto best = std::min_element(
+        times.begin(), end, [](const OffsetTime& a, const OffsetTime& b) { return a.total_ms() < b.total_ms(); });
+    return static_cast<std::uint32_t>(best - times.begin());
+}
+
+}  // namespace raya

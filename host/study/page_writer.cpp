@@ -1,0 +1,231 @@
+#include "study/page_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "report/whole_file.hpp"
+#include "study/text_tables.hpp"
+
+namespace raya {
+namespace {
+
+using nlohmann::ordered_json;
+using Cells = std::vector<std::vector<std::string>>;
+
+// Five digits, and never an exponent where all digits fit: a reader compares figures by their lengths.
+std::string shown(double value) {
+    if (value == 0) return "0";  // not -0
+    const double size = std::abs(value);
+    return size >= 1e4 && size < 1e15 ? fmt::format("{:.0f}", value) : fmt::format("{:.5g}", value);
+}
+
+std::string shown(const Cell& cell) {
+    if (const auto* value = std::get_if<double>(&cell)) return shown(*value);
+    if (const auto* count = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *count);
+    return std::get<std::string>(cell);
+}
+
+std::string exact(const Cell& cell) {
+    return std::visit([](const auto& value) { return fmt::format("{}", value); }, cell);
+}
+
+ordered_json json_cell(const Cell& cell) {
+    if (const auto* value = std::get_if<double>(&cell)) return json_number(*value);
+    if (const auto* count = std::get_if<std::int64_t>(&cell)) return *count;
+    return std::get<std::string>(cell);
+}
+
+// Empty where the paper has no number, or none to divide by.
+std::optional<double> ratio_of(const Comparison& c) {
+    if (!c.paper || *c.paper == 0) return {};
+    return c.ours / *c.paper;
+}
+
+ordered_json optional_json(const std::optional<double>& value) { return value ? json_number(*value) : nullptr; }
+
+ordered_json json_numbers(const std::vector<double>& values) {
+    auto numbers = ordered_json::array();
+    for (double value : values) numbers.push_back(json_number(value));
+    return numbers;
+}
+
+const char* style_name(PlotStyle style) {
+    switch (style) {
+        case PlotStyle::kLine:
+            return "line";
+        case PlotStyle::kPoints:
+            return "points";
+        case PlotStyle::kSteps:
+            return "steps";
+        case PlotStyle::kPaper:
+            return "paper";
+    }
+    throw std::invalid_argument("no such plot style");
+}
+
+ordered_json comparison_json(const Comparison& c) {
+    return {{"what", c.what},
+            {"unit", c.unit},
+            {"paper", optional_json(c.paper)},
+            {"ours", json_number(c.ours)},
+            {"ratio", optional_json(ratio_of(c))},
+            {"remark", c.remark}};
+}
+
+ordered_json table_json(const StudyTable& table) {
+    auto rows = ordered_json::array();
+    for (const auto& row : table.rows) {
+        auto cells = ordered_json::array();
+        for (const Cell& cell : row) cells.push_back(json_cell(cell));
+        rows.push_back(std::move(cells));
+    }
+    return {{"name", table.name}, {"title", table.title}, {"columns", table.columns}, {"rows", std::move(rows)}};
+}
+
+ordered_json plot_json(const StudyPlot& plot) {
+    auto series = ordered_json::array();
+    for (const PlotSeries& s : plot.series)
+        series.push_back(
+            {{"label", s.label}, {"style", style_name(s.style)}, {"x", json_numbers(s.x)}, {"y", json_numbers(s.y)}});
+    return {{"name", plot.name},   {"title", plot.title}, {"x_label", plot.x_label},    {"y_label", plot.y_label},
+            {"log_x", plot.log_x}, {"log_y", plot.log_y}, {"series", std::move(series)}};
+}
+
+template <typename T, typename F>
+ordered_json json_list(const std::vector<T>& items, F json_of) {
+    auto list = ordered_json::array();
+    for (const T& item : items) list.push_back(json_of(item));
+    return list;
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+    return unit.empty() ? number : number + ' ' + unit;
+}
+
+std::string comparison_table(const std::vector<Comparison>& comparisons) {
+    Cells cells = {{"", "paper", "ours", "ours / paper", "remark"}};
+    for (const Comparison& c : comparisons) {
+        const std::optional<double> ratio = ratio_of(c);
+        cells.push_back({c.what, c.paper ? with_unit(shown(*c.paper), c.unit) : "-", with_unit(shown(c.ours), c.unit),
+                         ratio ? fmt::format("{:.3g}", *ratio) : "-", c.remark});
+    }
+    return markdown_table(cells);
+}
+
+std::string list(const std::vector<std::string>& sentences) {
+    std::string text;
+    for (const std::string& sentence : sentences) text += "- " + sentence + '\n';
+    return text;
+}
+
+// Nothing for an empty text.
+std::string section(const std::string& title, const std::string& text) {
+    return text.empty() ? "" : fmt::format("\n## {}\n\n{}", title, text);
+}
+
+std::string table_section(const StudyTable& table) {
+    const std::string file = fmt::format("[{0}.csv]({0}.csv)", table.name);
+    if (!table.on_page) return section(table.title, fmt::format("{} rows, in {}.\n", table.rows.size(), file));
+    Cells cells = {table.columns};
+    for (const auto& row : table.rows) {
+        cells.emplace_back();
+        for (const Cell& cell : row) cells.back().push_back(shown(cell));
+    }
+    return section(table.title, fmt::format("{}\nWith all digits: {}.\n", markdown_table(cells), file));
+}
+
+std::string plots_text(const StudyPage& page, const PlotOutcome& plots) {
+    if (page.plots.empty()) return {};
+    if (!plots.drawn)
+        return fmt::format("Not drawn: {}. Then `tools/plot.py {}.json` draws them.\n", plots.reason, page.name);
+    std::string text;
+    for (const StudyPlot& plot : page.plots)
+        text += fmt::format("{0}![{1}]({2}.svg)\n", text.empty() ? "" : "\n", plot.title, plot.name);
+    return text;
+}
+
+void check_names(const StudyPage& page) {
+    std::set<std::string> tables, plots;
+    for (const StudyTable& table : page.tables) {
+        if (!tables.insert(table.name).second) throw std::invalid_argument("two tables are called " + table.name);
+        for (const auto& row : table.rows)
+            if (row.size() != table.columns.size())
+                throw std::invalid_argument(fmt::format("table {}: a row of {} cells under {} columns", table.name,
+                                                        row.size(), table.columns.size()));
+    }
+    for (const StudyPlot& plot : page.plots)
+        if (!plots.insert(plot.name).second) throw std::invalid_argument("two plots are called " + plot.name);
+}
+
+}  // namespace
+
+std::vector<std::string> page_files(const StudyPage& page) {
+    std::vector<std::string> files = {page.name + ".md", page.name + ".json"};
+    for (const StudyTable& table : page.tables) files.push_back(table.name + ".csv");
+    return files;
+}
+
+std::string table_csv(const StudyTable& table) {
+    std::string text;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) text += (i > 0 ? "," : "") + csv_field(table.columns[i]);
+    text += '\n';
+    for (const auto& row : table.rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) text += (i > 0 ? "," : "") + csv_field(exact(row[i]));
+        text += '\n';
+    }
+    return text;
+}
+
+ordered_json page_json(const StudyPage& page) {
+    return {{"study", page.name},
+            {"title", page.title},
+            {"question", page.question},
+            {"method", page.method},
+            {"settings", page.settings},
+            {"comparisons", json_list(page.comparisons, comparison_json)},
+            {"findings", page.findings},
+            {"tables", json_list(page.tables, table_json)},
+            {"plots", json_list(page.plots, plot_json)}};
+}
+
+std::string page_markdown(const StudyPage& page, const PlotOutcome& plots) {
+    std::string text = fmt::format("# {}\n\n{}\n", page.title, page.question);
+    text += section("How it was done", list(page.method));
+    if (!page.comparisons.empty()) text += section("Beside the paper", comparison_table(page.comparisons));
+    text += section("What is seen", list(page.findings));
+    for (const StudyTable& table : page.tables) text += table_section(table);
+    text += section("Plots", plots_text(page, plots));
+    return text + fmt::format("\nEverything on this page, for programs: [{0}.json]({0}.json).\n", page.name);
+}
+
+PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& page) {
+    check_names(page);
+    // A scene's label may be a path in any encoding; JSON must be UTF-8.
+    const std::string json = page_json(page).dump(2, ' ', false, ordered_json::error_handler_t::replace);
+    for (const StudyTable& table : page.tables) write_whole_file(folder / (table.name + ".csv"), table_csv(table));
+    write_whole_file(folder / (page.name + ".json"), json + '\n');
+    PlotOutcome plots = draw_plots(folder, page);
+    write_whole_file(folder / (page.name + ".md"), page_markdown(page, plots));
+    return plots;
+}
+
+std::string index_markdown(std::span<const StudyPage> pages) {
+    std::string text =
+        "# The load laboratory\n\nThe figures and tables of the paper (Kohata and Ito, 1993), computed again, and what "
+        "goes beyond them, in the order in which they are best read.\n";
+    for (const StudyPage& page : pages) {
+        text += fmt::format("\n## [{}]({}.md)\n\n{}\n", page.title, page.name, page.question);
+        if (!page.comparisons.empty()) text += '\n' + comparison_table(page.comparisons);
+        if (!page.findings.empty()) text += fmt::format("\n{}\n", page.findings.front());
+    }
+    return text;
+}
+
+void write_index(const std::filesystem::path& folder, std::span<const StudyPage> pages) {
+    write_whole_file(folder / "index.md", index_markdown(pages));
+}
+
+}  // namespace raya

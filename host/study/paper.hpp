@@ -1,0 +1,35 @@
+// What Kohata & Ito (1993) printed, each figure with its place; marked [D] where it is arithmetic on printed figures.
+#pragma once
+
+namespace raya::paper {
+
+inline constexpr double kPes = 256, kSize = 256;
+
+// Table 2: milliseconds of the scene of Fig. 6 on the SPA of 256 PEs and of one.
+inline constexpr double kObjectsMs = 2, kComputeMs = 283, kImageMs = 140, kDisplayMs = 1130, kTotalMs = 1555;
+inline constexpr double kOnePeComputeMs = 64'800, kOnePeTotalMs = 66'072;
+inline constexpr double kPcMs = 295'910, kWorkstationMs = 28'800;  // computing only
+
+// Table 3: ray tracing and filtering, p = 0 and p = 16.
+inline constexpr double kTrace0Ms = 653, kTrace16Ms = 283, kFilter0Ms = 9, kFilter16Ms = 19;
+
+// Table 4: supersampling, communication and computation, p = 0 and p = 16.
+inline constexpr double kExchange0Ms = 2, kExchange16Ms = 12, kSupersample0Ms = 739, kSupersample16Ms = 407;
+
+// [D] Table 3: what a rotation takes, and that filtering's arithmetic takes the same for every p, give p = 8.
+inline constexpr double kFilterArithmeticMs = 7, kFilter8Ms = 14, kExchange8Ms = 7;
+// [D] Table 4, if its computation is the supersampling alone: pixels recomputed, and what they take on the mean PE.
+inline constexpr double kRecomputedLeast = 0.16, kRecomputedMost = 0.18, kMeanSupersampleMs = 364;
+
+inline constexpr double kSpeedup16 = 229;                         // section on the experiments, Fig. 9
+inline constexpr double kMeanMs = kOnePeComputeMs / kPes;         // [D] mean load
+inline constexpr double kSpeedup0 = kOnePeComputeMs / kTrace0Ms;  // [D] 99.2
+inline constexpr double kImbalance0 = kTrace0Ms / kMeanMs - 1;    // [D] u(0) = 1.580
+inline constexpr double kImbalance16 = kTrace16Ms / kMeanMs - 1;  // [D] u(16) = 0.118
+inline constexpr double kEfficiency0 = kSpeedup0 / kPes;          // [D]
+inline constexpr double kEfficiency16 = kSpeedup16 / kPes;        // [D]
+inline constexpr double kCapRatio = 3.86;                         // beside Fig. 9: CAP, 256 PEs over 64
+inline constexpr double kPixelMachineSpeedup = 60;                // beside Fig. 9: 64 nodes, "60 or more"
+inline constexpr double kRotationMs = 0.3125;                     // [D] Tables 3 and 4: 10 ms for 32 rotations
+
+}  // namespace raya::paper

@@ -1,0 +1,26 @@
+// The scenes that studies take by default, and names for them.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace raya {
+
+/// A scene under the name by which reports call it.
+struct LabelledScene {
+    std::string label;
+    Scene scene;
+};
+
+/// A scene that the program carries within itself, by its name in scenes/, without .nff.
+LabelledScene embedded_scene(const std::string& name);
+
+/// centre, spheres, glass, polygons, cones.
+std::vector<LabelledScene> embedded_study_scenes();
+
+/// Ten scenes of 6 to 30 spheres and planes, as in the paper's experiments: the project's own of that size, and
+/// generated ones.
+std::vector<LabelledScene> paper_like_scenes();
+
+}  // namespace raya

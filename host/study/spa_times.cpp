@@ -1,0 +1,69 @@
+#include "study/spa_times.hpp"
+
+#include <fmt/format.h>
+
+#include "error.hpp"
+#include "machine/budget.hpp"
+#include "ring/mapping.hpp"
+#include "ring/schedule.hpp"
+#include "study/paper.hpp"
+
+namespace raya {
+namespace {
+
+SpaRun run_of(const RingSettings& settings, RingResult result) {
+    SpaRun run;
+    run.machine = settings.machine.name;
+    for (Phase& phase : result.phases) {
+        run.phases.push_back(std::move(phase.load));
+        run.cost.push_back(std::move(phase.cost));
+    }
+    run.smoothing = smoothing_cycles(settings.antialias.method, largest_share(settings.mapping));
+    run.communication = result.communication;
+    run.pixels = std::uint64_t{settings.mapping.width} * settings.mapping.height;
+    run.recomputed = result.recomputed;
+    return run;
+}
+
+}  // namespace
+
+SpaRun run_on_spa(Session& session, const LabelledScene& scene, std::uint32_t size, std::uint32_t pes,
+                  std::uint32_t offset, AntialiasMethod method) {
+    RingSettings settings;
+    settings.machine = machine_named("spa");
+    settings.format = format_for(scene.scene);
+    settings.bounces = settings.machine.bounces;
+    settings.mapping = make_mapping("cyclic", size, size, pes, offset, "cyclic");
+    settings.antialias.method = method;
+    try {
+        return run_of(settings, RingRenderer(session, scene.scene, settings).render());
+    } catch (const UserError&) {  // too large for its PEs; whatever else is wrong is wrong on grande as well
+        settings.machine = machine_named("grande");
+        return run_of(settings, RingRenderer(session, scene.scene, settings).render());
+    }
+}
+
+ModelledTime spa_time(const SpaRun& run, double factor) {
+    return modelled_time(machine_named("spa"), run.phases, run.communication, factor, run.smoothing).value();
+}
+
+SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share) {
+    SmoothingCycles cycles;
+    if (method == AntialiasMethod::kFilter) cycles.filter = filter_cycles(share);
+    if (method == AntialiasMethod::kSupersample) cycles.compare = compare_cycles(share);
+    return cycles;
+}
+
+double fitted_factor(const CostImage& trace) {
+    constexpr double kPaperPixelMs = paper::kOnePeComputeMs / (paper::kSize * paper::kSize);
+    const auto pixels = static_cast<double>(trace.cycles.size());
+    return kPaperPixelMs * pixels / spa_ms(static_cast<double>(total_cycles(trace)));
+}
+
+std::optional<double> printed(double value, std::uint32_t size) {
+    return size == static_cast<std::uint32_t>(paper::kSize) ? std::optional<double>(value) : std::nullopt;
+}
+
+std::string offset_name(std::uint32_t offset) { return fmt::format("p = {}", offset); }
+
+}  // namespace raya

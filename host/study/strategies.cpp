@@ -1,0 +1,93 @@
+#include "study/strategies.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "ring/mapping.hpp"
+
+namespace raya {
+namespace {
+
+std::uint32_t root_of(std::uint32_t pes) { return static_cast<std::uint32_t>(std::lround(std::sqrt(pes))); }
+
+// A rows of B PEs, A the largest divisor of P up to its root.
+std::string squarest_grid(std::uint32_t pes) {
+    std::uint32_t rows = 1;
+    for (std::uint32_t a = 1; a * a <= pes; ++a)
+        if (pes % a == 0) rows = a;
+    return fmt::format("grid:{}x{}", rows, pes / rows);
+}
+
+Strategy fixed(const std::string& name, const std::string& mapping) {
+    return {name, StrategyKind::kStatic, mapping, {}};
+}
+
+bool owns_single_columns(const raya_mapping& mapping) {
+    std::vector<std::uint32_t> column_of(mapping.pes, mapping.width);  // mapping.width: none yet
+    for (std::uint32_t row = 0; row < mapping.height; ++row)
+        for (std::uint32_t column = 0; column < mapping.width; ++column) {
+            std::uint32_t& own = column_of[raya_owner(mapping, row, column)];
+            if (own == mapping.width) own = column;
+            if (own != column) return false;
+        }
+    return true;
+}
+
+// The dynamic one or the hybrid, with free requests and with such of `overhead` cycles.
+void add_asking(std::vector<Strategy>& all, const std::string& start, std::uint32_t chunk, double share,
+                std::uint64_t overhead) {
+    const std::string name =
+        share > 0 ? fmt::format("hybrid:{}, share {}", chunk, share) : fmt::format("dynamic:{}", chunk);
+    const StrategyKind kind = share > 0 ? StrategyKind::kHybrid : StrategyKind::kDynamic;
+    all.push_back({name + ", free requests", kind, start, {chunk, 0, share}});
+    all.push_back({name, kind, start, {chunk, overhead, share}});
+}
+
+}  // namespace
+
+std::vector<Strategy> strategies(std::uint32_t size, std::uint32_t pes, std::uint64_t overhead) {
+    constexpr std::uint32_t kOffset = 16, kTile = 8;
+    const std::uint32_t tile = std::gcd(size, kTile);
+    std::vector<Strategy> all = {
+        fixed("column split", "column"),
+        fixed("cyclic, p = 16", fmt::format("cyclic:{}", kOffset % size)),
+        fixed("cyclic, p = sqrt(P)", fmt::format("cyclic:{}", root_of(pes) % size)),
+        fixed("blocks of scan lines", "blocks"),
+        fixed("tiles 8 x 8", fmt::format("tiles:{}x{}", tile, tile)),
+        fixed("grid", squarest_grid(pes)),
+        fixed("random", "random:1"),
+    };
+    for (const std::uint32_t chunk : {1u, 16u, 64u}) add_asking(all, "column", chunk, 0, overhead);
+    add_asking(all, squarest_grid(pes), 16, 0.5, overhead);
+    add_asking(all, squarest_grid(pes), 16, 0.9, overhead);
+    add_asking(all, squarest_grid(pes), 1, 0.9, overhead);
+    return all;
+}
+
+Outcome run_strategy(const CostImage& image, std::uint32_t pes, const Strategy& strategy) {
+    const raya_mapping mapping = make_mapping(strategy.mapping, image.width, image.height, pes, 0, "cyclic");
+    Outcome outcome;
+    if (strategy.kind == StrategyKind::kStatic) {
+        outcome.makespan = static_load(image, mapping).max;
+        outcome.single_columns = owns_single_columns(mapping);
+    } else {
+        const Schedule schedule = dynamic_schedule(image, mapping, strategy.plan);
+        outcome.makespan = makespan(schedule);
+        outcome.requests = schedule.requests;
+    }
+    if (outcome.makespan == 0) return {0, 1, 1, outcome.requests, outcome.single_columns};
+    const auto last = static_cast<double>(outcome.makespan);
+    outcome.efficiency = static_cast<double>(total_cycles(image)) / (static_cast<double>(pes) * last);
+    outcome.over_bound = last / static_cast<double>(lower_bound(image, pes));
+    return outcome;
+}
+
+std::uint64_t round_trip_cycles(const Machine& machine) {
+    constexpr double kWords = 1 + 2;
+    const double ms = 2 * machine.rotation_sync_ms.value() + 1e3 * kWords / machine.link_words_per_s.value();
+    return static_cast<std::uint64_t>(std::llround(1e6 * ms / machine.cycle_ns.value()));
+}
+
+}  // namespace raya

@@ -1,0 +1,54 @@
+// A seeded bijection of the numbers 0 .. count - 1 that leaves no order to be seen: the random mapping's.
+//
+// A Feistel network on the fewest bits that hold count - 1, split into a high and a low half: each round xors one half
+// with a hash of the other, so the same rounds backwards undo it, whatever the hash. What falls outside 0 .. count - 1
+// goes through the network again until it falls inside (cycle walking): under two passes on average, since at least
+// half of the network's numbers lie inside. 1 <= count <= 2^28.
+#ifndef RAYA_SHARED_SCRAMBLE_H
+#define RAYA_SHARED_SCRAMBLE_H
+#include "shared/portable.h"
+
+#define RAYA_SCRAMBLE_ROUNDS 6u
+
+// The finaliser of MurmurHash3 (A. Appleby, public domain): every bit of the result depends on every bit of x.
+RAYA_SHARED_FUNCTION raya_u32 raya_mix(raya_u32 x) {
+    x = (x ^ x >> 16) * 0x85ebca6bu;
+    x = (x ^ x >> 13) * 0xc2b2ae35u;
+    return x ^ x >> 16;
+}
+
+RAYA_SHARED_FUNCTION raya_u32 raya_scramble_bits(raya_u32 count) {
+    raya_u32 bits = 0;
+    while (1u << bits < count) ++bits;
+    return bits;
+}
+
+// One round of the network on `bits` bits; its own inverse.
+RAYA_SHARED_FUNCTION raya_u32 raya_scramble_round(raya_u32 number, raya_u32 bits, raya_u32 seed, raya_u32 round) {
+    const raya_u32 low = bits - bits / 2, low_mask = (1u << low) - 1, high_mask = (1u << bits / 2) - 1;
+    const raya_u32 key = raya_mix(seed + (round + 1) * 0x9e3779b9u);  // mixed, so that near seeds have nothing in common
+    if (round & 1u) return number ^ (raya_mix(key ^ number >> low) & low_mask);
+    return number ^ (raya_mix(key ^ (number & low_mask)) & high_mask) << low;
+}
+
+// Where `number` < count goes.
+RAYA_SHARED_FUNCTION raya_u32 raya_scramble(raya_u32 number, raya_u32 count, raya_u32 seed) {
+    const raya_u32 bits = raya_scramble_bits(count);
+    do {
+        for (raya_u32 round = 0; round < RAYA_SCRAMBLE_ROUNDS; ++round)
+            number = raya_scramble_round(number, bits, seed, round);
+    } while (number >= count);
+    return number;
+}
+
+// What goes to `number` < count; the inverse of raya_scramble.
+RAYA_SHARED_FUNCTION raya_u32 raya_unscramble(raya_u32 number, raya_u32 count, raya_u32 seed) {
+    const raya_u32 bits = raya_scramble_bits(count);
+    do {
+        for (raya_u32 round = RAYA_SCRAMBLE_ROUNDS; round > 0; --round)
+            number = raya_scramble_round(number, bits, seed, round - 1);
+    } while (number >= count);
+    return number;
+}
+
+#endif

@@ -1,0 +1,44 @@
+// What holds for every mapping: shares and owners tell the same story, and it is the one that was defined.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "shared/mapping.h"
+
+namespace raya {
+
+/// How many pixels, of all that the PEs' shares list, lie outside the image, come twice, have another owner by
+/// raya_owner or by `defined(row, column)`, or another number by raya_index_of; and how many come in no share. Notes
+/// the size of each share.
+template <class Defined>
+std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<std::uint32_t>& sizes) {
+    std::vector<bool> seen(std::size_t{m.width} * m.height);
+    std::uint32_t wrong = 0;
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const raya_share share = raya_share_of(m, pe);
+        sizes.push_back(raya_share_size(share));
+        if (sizes.back() > seen.size()) return ~0u;  // a size that wrapped round: no use in listing it
+        for (std::uint32_t k = 0; k < sizes.back(); ++k) {
+            const raya_pixel pixel = raya_pixel_of(m, share, k);
+            const bool inside = pixel.row < m.height && pixel.column < m.width;
+            const std::size_t at = std::size_t{pixel.row} * m.width + pixel.column;
+            const bool good = inside && !seen[at] && raya_owner(m, pixel.row, pixel.column) == pe &&
+                              defined(pixel.row, pixel.column) == pe && raya_index_of(m, share, pixel) == k;
+            if (inside) seen[at] = true;
+            wrong += !good;
+        }
+    }
+    return wrong + static_cast<std::uint32_t>(std::count(seen.begin(), seen.end(), false));
+}
+
+/// Whether the pixel's owner lists it under the number that raya_index_of gives.
+inline bool round_trip_holds(const raya_mapping& m, const raya_pixel& pixel) {
+    const raya_share share = raya_share_of(m, raya_owner(m, pixel.row, pixel.column));
+    const std::uint32_t k = raya_index_of(m, share, pixel);
+    if (k >= raya_share_size(share)) return false;
+    const raya_pixel back = raya_pixel_of(m, share, k);
+    return back.row == pixel.row && back.column == pixel.column;
+}
+
+}  // namespace raya

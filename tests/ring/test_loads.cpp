@@ -1,0 +1,25 @@
+// The loads of the PEs are the sums of their pixels' costs: what the kernels count for a PE, and what they count for a
+// pixel, are the same events.
+#include <catch2/catch.hpp>
+
+#include "ring/render_scene.hpp"
+#include "ring/schedule.hpp"
+
+namespace raya {
+TEST_CASE("each PE's load is the sum of its pixels' costs, in every phase", "[ring]") {
+    const std::string scene = GENERATE("centre", "polygons", "cones");
+    const auto [pes, offset] = GENERATE(table<std::uint32_t, std::uint32_t>({{1, 0}, {7, 5}, {40, 16}, {64, 3}}));
+    CAPTURE(scene, pes, offset);
+    RingCase c{.width = 40, .height = 24, .pes = pes, .offset = offset, .lanes = 4};
+    c.antialias.method = AntialiasMethod::kSupersample;
+    const RingResult result = render_scene(project_scene(scene), c);
+    REQUIRE(result.phases.size() == 2);
+    for (const Phase& phase : result.phases) {
+        CAPTURE(phase.name);
+        CHECK(phase.load.per_pe == static_load(phase.cost, settings_of(c).mapping).per_pe);
+        CHECK(phase.load.max > 0);
+    }
+    CHECK(result.all.load.per_pe == static_load(result.all.cost, settings_of(c).mapping).per_pe);
+}
+
+}  // namespace raya

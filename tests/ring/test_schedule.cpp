@@ -1,0 +1,248 @@
+// Loads from cost images: against plain sums, against a simulation event by event, and within the bounds of theory.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <deque>
+#include <numeric>
+#include <vector>
+
+#include "ring/schedule.hpp"
+#include "scene/split_mix.hpp"
+#include "small_mapping.hpp"
+
+using namespace raya;
+
+namespace {
+
+using Cycles = std::vector<std::uint64_t>;
+
+/// Costs of one kind a picture: none, few values (so that many PEs are free at the same time), even, or a few pixels
+/// that cost far more than all others.
+CostImage random_image(SplitMix& random, std::uint32_t width, std::uint32_t height) {
+    CostImage image{width, height, {}};
+    const std::uint64_t kind = random.next() % 8;
+    for (std::uint32_t i = 0; i < width * height; ++i) {
+        const std::uint64_t any = random.next();
+        const std::uint64_t heavy = any % 16 == 0 ? any % 1'000'003 : any % 10;
+        image.cycles.push_back(kind == 0 ? 0 : kind < 4 ? any % 4 : kind < 6 ? 9'000 + any % 2'000 : heavy);
+    }
+    return image;
+}
+
+DynamicPlan random_plan(SplitMix& random, std::uint32_t pixels) {
+    DynamicPlan plan;
+    plan.chunk = random.next() % 4 == 0 ? 1 : 1 + random_below(random, random.next() % 2 ? 8 : pixels + 2);
+    plan.overhead = random.next() % 3 * random_below(random, 500);
+    const double shares[] = {0, 0, 0.25, 0.5, 0.9, 1, random.uniform(0, 1)};
+    plan.static_share = shares[random_below(random, 7)];
+    return plan;
+}
+
+struct Simulated {
+    Cycles finished;
+    std::uint64_t requests = 0;
+};
+
+/// The definition, one event after the other: shares by asking every pixel for its owner, the next PE by asking all.
+Simulated simulated(const CostImage& image, const raya_mapping& m, const DynamicPlan& plan) {
+    std::vector<std::vector<std::uint64_t>> shares(m.pes);  // pixel numbers
+    for (std::uint32_t j = 0; j < image.height; ++j)
+        for (std::uint32_t x = 0; x < image.width; ++x) shares[raya_owner(m, j, x)].push_back(j * image.width + x);
+    Simulated run;
+    std::deque<std::uint64_t> queue(image.cycles.size());
+    std::iota(queue.begin(), queue.end(), 0);
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const raya_share own = raya_share_of(m, pe);
+        run.finished.push_back(0);
+        for (const std::uint64_t at : shares[pe]) {
+            const raya_pixel pixel{static_cast<std::uint32_t>(at) / m.width, static_cast<std::uint32_t>(at) % m.width};
+            const double end = plan.static_share * static_cast<double>(shares[pe].size());
+            if (raya_index_of(m, own, pixel) + 1 > end) continue;
+            run.finished[pe] += image.cycles[at];
+            queue.erase(std::find(queue.begin(), queue.end(), at));
+        }
+    }
+    while (!queue.empty()) {
+        const auto first_free = std::min_element(run.finished.begin(), run.finished.end());  // of equals the first
+        *first_free += plan.overhead;
+        ++run.requests;
+        for (std::uint32_t i = 0; i < plan.chunk && !queue.empty(); ++i, queue.pop_front())
+            *first_free += image.cycles[queue.front()];
+    }
+    return run;
+}
+
+std::uint64_t sum_of(const Cycles& cycles) { return std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0}); }
+
+}  // namespace
+
+TEST_CASE("a static load is the sum of its pixels' costs", "[schedule]") {
+    CHECK(static_load({3, 2, {1, 20, 300, 4'000, 50'000, 600'000}}, {3, 2, 3, 1, RAYA_FOLD_CYCLIC}).per_pe ==
+          Cycles{1 + 50'000, 20 + 600'000, 300 + 4'000});  // PE i owns (0, i) and (1, i + 1)
+    constexpr std::uint64_t kSeed = 1;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 400; ++i) {
+        const raya_mapping m = small_mapping(random, 30);
+        const auto [width, height, pes, offset, fold] = m;
+        CAPTURE(kSeed, i, width, height, pes, offset, fold);
+        const CostImage image = random_image(random, width, height);
+        Cycles sums;
+        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // by the list of its pixels: the other way round than by owner
+            const raya_share own = raya_share_of(m, pe);
+            sums.push_back(0);
+            for (std::uint32_t k = 0; k < raya_share_size(own); ++k) {
+                const raya_pixel pixel = raya_pixel_of(m, own, k);
+                sums.back() += image.cycles[pixel.row * width + pixel.column];
+            }
+        }
+        const Load load = static_load(image, m);
+        CHECK(load.per_pe == sums);
+        CHECK(sum_of(load.per_pe) == total_cycles(image));
+        CHECK(load.max >= lower_bound(image, pes));
+    }
+}
+
+TEST_CASE("imbalances of many offsets are those of the static loads to the bit", "[schedule]") {
+    constexpr std::uint64_t kSeed = 2;
+    SplitMix random(kSeed);
+    const auto compare = [&](const CostImage& image, std::uint32_t pes, std::uint32_t fold,
+                             const std::vector<std::uint32_t>& offsets) {
+        const auto imbalances = imbalance_of_offsets(image, pes, fold, offsets);
+        REQUIRE(imbalances.size() == offsets.size());
+        for (std::size_t k = 0; k < offsets.size(); ++k) {
+            CAPTURE(kSeed, image.width, image.height, pes, fold, offsets[k]);
+            CHECK(imbalances[k] == static_load(image, {image.width, image.height, pes, offsets[k], fold}).imbalance);
+        }
+    };
+    for (int i = 0; i < 300; ++i) {
+        const auto [width, height, pes, offset, fold] = small_mapping(random, 30);
+        std::vector<std::uint32_t> offsets(width);
+        std::iota(offsets.rbegin(), offsets.rend(), 0u);
+        compare(random_image(random, width, height), pes, fold, offsets);
+    }
+    const CostImage large = random_image(random, 512, 512);
+    for (const std::uint32_t pes : {256u, 512u, 1'000u})
+        for (const std::uint32_t fold : {RAYA_FOLD_CYCLIC, RAYA_FOLD_BLOCK})
+            compare(large, pes, fold, {0, 1, 16, 23, 255, 256, 511});
+}
+
+TEST_CASE("dynamic and hybrid schedules are those of the simulation", "[schedule]") {
+    const CostImage six{6, 1, {5, 1, 1, 1, 1, 2}};
+    const raya_mapping two{6, 1, 2, 0, RAYA_FOLD_BLOCK};  // PE 0 owns 5 1 1, PE 1 owns 1 1 2
+    CHECK(dynamic_schedule(six, two, {1, 0, 0}).load.per_pe == Cycles{5, 6});
+    CHECK(dynamic_schedule(six, two, {2, 10, 0}).load.per_pe == Cycles{16, 12 + 13});  // 5 1, then 1 1, then 1 2
+    CHECK(dynamic_schedule(six, two, {1, 10, 0.5}).load.per_pe == Cycles{5 + 11 + 12, 1 + 11 + 11});  // 1 1 1 2 left
+    constexpr std::uint64_t kSeed = 3;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 1'500; ++i) {
+        const raya_mapping m = small_mapping(random, 14);
+        const auto [width, height, pes, offset, fold] = m;
+        const CostImage image = random_image(random, width, height);
+        const DynamicPlan plan = random_plan(random, width * height);
+        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_share);
+        const Schedule schedule = dynamic_schedule(image, m, plan);
+        const Simulated run = simulated(image, m, plan);
+        CHECK(schedule.load.per_pe == run.finished);
+        CHECK(schedule.requests == run.requests);
+        CHECK(makespan(schedule) == *std::max_element(run.finished.begin(), run.finished.end()));
+    }
+}
+
+TEST_CASE("schedules lose no work and keep to Graham's bounds", "[schedule]") {
+    constexpr std::uint64_t kSeed = 4;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 1'500; ++i) {
+        const raya_mapping m = small_mapping(random, 25);
+        const auto [width, height, pes, offset, fold] = m;
+        const CostImage image = random_image(random, width, height);
+        DynamicPlan plan = random_plan(random, width * height);
+        const std::uint64_t total = total_cycles(image), least = lower_bound(image, pes);
+        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_share, total, least);
+        const Schedule any = dynamic_schedule(image, m, plan);
+        CHECK(sum_of(any.load.per_pe) == total + any.requests * plan.overhead);
+        CHECK(makespan(any) >= least);
+        CHECK(speedup(any, image) <= any.load.speedup);
+
+        plan.overhead = 0;
+        plan.static_share = 0;
+        const Schedule list = dynamic_schedule(image, m, plan);
+        std::uint64_t largest_chunk = 0;
+        for (std::size_t at = 0; at < image.cycles.size(); at += plan.chunk) {
+            const auto end = std::min<std::size_t>(at + plan.chunk, image.cycles.size());
+            largest_chunk = std::max(largest_chunk, sum_of({&image.cycles[at], image.cycles.data() + end}));
+        }
+        CHECK(list.requests == (width * height + plan.chunk - 1) / plan.chunk);
+        CHECK(pes * makespan(list) <= total + (pes - 1) * largest_chunk);
+        CHECK(speedup(list, image) == list.load.speedup);  // no overhead: the two are one
+        plan.chunk = 1;
+        CHECK(pes * makespan(dynamic_schedule(image, m, plan)) <= (2 * pes - 1) * least);  // 2 - 1 / P of the optimum
+    }
+}
+
+TEST_CASE("the ends of a plan: all at once, all static, one PE, more PEs than chunks", "[schedule]") {
+    constexpr std::uint64_t kSeed = 5;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 300; ++i) {
+        raya_mapping m = small_mapping(random, 25);
+        const std::uint32_t pixels = m.width * m.height;
+        const CostImage image = random_image(random, m.width, m.height);
+        const std::uint64_t total = total_cycles(image);
+        const DynamicPlan plan = random_plan(random, pixels);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, plan.chunk, plan.overhead, plan.static_share);
+
+        const Schedule at_once = dynamic_schedule(image, m, {pixels + random_below(random, 3), plan.overhead, 0});
+        Cycles first_only(m.pes);
+        first_only[0] = total + plan.overhead;
+        CHECK(at_once.load.per_pe == first_only);
+        CHECK(at_once.requests == 1);
+
+        const Schedule all_static = dynamic_schedule(image, m, {plan.chunk, plan.overhead, 1});
+        CHECK(all_static.load.per_pe == static_load(image, m).per_pe);
+        CHECK(all_static.requests == 0);
+
+        m.pes = pixels;  // a PE for each pixel: where pixels cost something each PE has one request, in order
+        if (*std::min_element(image.cycles.begin(), image.cycles.end()) > 0)
+            CHECK(dynamic_schedule(image, m, {1, 0, 0}).load.per_pe == image.cycles);
+        const Schedule idle = dynamic_schedule(image, m, {plan.chunk, plan.overhead + 1, 0});
+        const auto unused = std::count(idle.load.per_pe.begin(), idle.load.per_pe.end(), 0u);
+        CHECK(static_cast<std::uint64_t>(unused) == pixels - idle.requests);
+
+        m.pes = 1;
+        const Schedule alone = dynamic_schedule(image, m, plan);
+        CHECK(makespan(alone) == total + alone.requests * plan.overhead);
+    }
+}
+
+TEST_CASE("speed-up is of the pure work, and defined where nothing costs anything", "[schedule]") {
+    const CostImage even{4, 1, {30, 30, 30, 30}};
+    const raya_mapping two{4, 1, 2, 0, RAYA_FOLD_CYCLIC};
+    const Schedule asked = dynamic_schedule(even, two, {1, 10, 0});
+    CHECK(makespan(asked) == 80);
+    CHECK(speedup(asked, even) == 1.5);  // 120 / 80
+    CHECK(asked.load.speedup == 2);      // 160 / 80: both are busy all the time
+    const CostImage nothing{4, 1, {0, 0, 0, 0}};
+    CHECK(speedup(dynamic_schedule(nothing, two, {1, 0, 0}), nothing) == 2);
+    CHECK(speedup(dynamic_schedule(nothing, two, {1, 10, 0}), nothing) == 0);
+    CHECK(imbalance_of_offsets(nothing, 2, RAYA_FOLD_CYCLIC, {0, 1}) == std::vector<double>{0, 0});
+    CHECK(lower_bound(even, 4) == 30);
+    CHECK(lower_bound({3, 1, {5, 5, 5}}, 2) == 8);
+    CHECK(lower_bound({3, 1, {1, 9, 1}}, 2) == 9);
+    CHECK(lower_bound(nothing, 3) == 0);
+}
+
+TEST_CASE("a large image on as many PEs as it has pixels, and on few", "[schedule]") {
+    constexpr std::uint64_t kSeed = 6;
+    constexpr std::uint32_t kSide = 1'024, kPixels = kSide * kSide;
+    SplitMix random(kSeed);
+    CostImage image{kSide, kSide, {}};
+    for (std::uint32_t i = 0; i < kPixels; ++i) image.cycles.push_back(1 + random.next() % 20'000);
+    const auto on = [](std::uint32_t pes) { return raya_mapping{kSide, kSide, pes, 32, RAYA_FOLD_CYCLIC}; };
+    CHECK((dynamic_schedule(image, on(kPixels), {1, 0, 0}).load.per_pe == image.cycles));
+    const std::uint64_t total = total_cycles(image);
+    for (const std::uint32_t pes : {1'000u, 16'384u, 524'288u}) {
+        CAPTURE(kSeed, pes);
+        const Schedule schedule = dynamic_schedule(image, on(pes), {2, 100, 0.25});
+        CHECK(sum_of(schedule.load.per_pe) == total + 100 * schedule.requests);
+        CHECK(pes * makespan(dynamic_schedule(image, on(pes), {1, 0, 0})) <= (2 * pes - 1) * lower_bound(image, pes));
+    }
+}

@@ -1,0 +1,44 @@
+// A made-up page with something of everything, and a look into the files that come of it.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "study/page.hpp"
+
+namespace raya {
+
+inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+inline StudyPage small_page() {
+    StudyPage page;
+    page.name = "small";
+    page.title = "A small study";
+    page.question = "Does it add up?";
+    page.method = {"One image.", "Two mappings."};
+    page.comparisons = {{"u(0)", "", 1.5, 1.575, "calibrated"},
+                        {"image transfer", "ms", 140, 35, ""},
+                        {"u(8)", "", {}, 0.1 + 0.2, "not printed"},
+                        {"lost", "rays", 0, 2, ""}};
+    page.findings = {"It does.", "Nearly."};
+    StudyTable table{.name = "small", .title = "All offsets", .columns = {"p", "u", "which, if any"}, .rows = {}};
+    table.rows = {{std::int64_t{0}, 1.0 / 3, std::string("a|b \"c\"")},
+                  {std::int64_t{-7}, kInfinite, std::string("d,\ne")}};
+    page.tables = {table, {"small-long", "All loads", {"load (cycles)"}, {{123456.75}, {-0.0}}, false}};
+    page.plots = {{"small-u", "u over p", "offset p (pixels)", "imbalance u", false, true, {}}};
+    page.plots[0].series = {{"ours", {0, 1, 2}, {1.5, 0.5, kInfinite}, PlotStyle::kLine},
+                            {"steps", {0, 1, 2}, {1, 2, 3}, PlotStyle::kSteps},
+                            {"scenes", {1, 1}, {0.25, 4}, PlotStyle::kPoints},
+                            {"paper", {0}, {1.58}, PlotStyle::kPaper}};
+    page.settings = {{"pes", 256}};
+    return page;
+}
+
+inline std::string contents_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace raya

@@ -1,0 +1,108 @@
+// Fig. 9: every figure against plain sums, and what the page says of each kind of image.
+#include <cmath>
+
+#include "study/fig_speedup.hpp"
+#include "study/page_writer.hpp"
+#include "study/studies.hpp"
+#include "study_cases.hpp"
+
+namespace raya {
+namespace {
+
+PlainLoad cyclic_load(const CostImage& image, std::uint32_t pes, std::uint32_t p, bool block) {
+    return plain_load(image, pes, [&](std::uint32_t row, std::uint32_t column) {
+        const std::uint32_t slot = sheared(row, column, p, image.width);
+        return block ? slot * pes / image.width : slot % pes;
+    });
+}
+
+PlainLoad square_load(const CostImage& image, std::uint32_t a) {
+    return plain_load(image, a * a, [&](std::uint32_t row, std::uint32_t column) { return row % a * a + column % a; });
+}
+
+void check_row(const CostImage& image, const std::vector<Cell>& row) {
+    const auto pes = static_cast<std::uint32_t>(number(row[0]));
+    const auto root = static_cast<std::uint32_t>(std::floor(std::sqrt(pes) + 0.5));
+    std::size_t column = 0;
+    for (const std::uint32_t p : {0u, 16 % image.width, root})
+        for (const bool block : {false, true}) {
+            CAPTURE(pes, p, block);
+            CHECK(number(row[++column]) == cyclic_load(image, pes, p, block).speedup());
+        }
+}
+
+TEST_CASE("fig9's speed-ups are sum / largest for every P, offset and fold", "[study]") {
+    constexpr unsigned kSeed = 91;
+    std::mt19937 random(kSeed);
+    for (int i = 0; i < 100; ++i) {
+        const auto side = static_cast<std::uint32_t>(16 + random() % 18);
+        CAPTURE(kSeed, i, side);
+        const CostImage image = random_costs(random, side);
+        const StudyPage page = speedup_page("random", image);
+        check_page(page);
+        const StudyTable& table = table_named(page, "fig9");
+        REQUIRE(table.rows.size() == side);
+        for (const auto& row : table.rows) check_row(image, row);
+        const StudyTable& squares = table_named(page, "fig9-squares");
+        REQUIRE(squares.rows.size() == static_cast<std::size_t>(std::sqrt(side)) - 1);
+        for (std::size_t n = 0; n < squares.rows.size(); ++n) {
+            const auto a = static_cast<std::uint32_t>(n + 2);
+            CHECK(number(squares.rows[n][0]) == a * a);
+            CHECK(number(squares.rows[n][1]) == square_load(image, a).speedup());
+        }
+        for (const Comparison& c : page.comparisons) CHECK_FALSE(c.paper);
+    }
+}
+
+// An even image of the paper's size, but for one pixel.
+CostImage one_dear(std::uint64_t cost) {
+    CostImage image = even_costs(256);
+    image.cycles[1000] = cost;
+    return image;
+}
+
+TEST_CASE("fig9 says how ours lies to the paper's 229 times", "[study]") {
+    const StudyPage even = speedup_page("even", even_costs(256));
+    CHECK(says(even, "more than the paper's 229"));
+    CHECK(says(speedup_page("near", one_dear(31)), "within 2 % of the paper's 229"));
+    CHECK(says(speedup_page("dear", one_dear(100)), "less than the paper's 229"));
+    REQUIRE(even.comparisons.size() == 4);
+    CHECK(even.comparisons[0].paper == 229.0);
+    CHECK(even.comparisons[2].what == "CAP's mapping, 16 x 16 PEs over 8 x 8");
+    CHECK(even.comparisons[2].ours == 4);
+    CHECK(even.comparisons[3].ours == 64);
+}
+
+TEST_CASE("fig9 sees the stairs of whole columns", "[study]") {
+    CHECK(says(speedup_page("even", even_costs(16)),
+               "with 9 to 15 PEs some PE still has two of the 16, and p = 16 gains nothing over 8 PEs; on 9 PEs it "
+               "gives 8.0 times, 3 x 3 PEs in two dimensions 7.1 times."));  // 256 pixels / 36 of PE (0, 0)
+    CostImage two = even_costs(16);  // columns 0 and 8 dear: 8 PEs give both to one, 9 do not
+    for (std::uint32_t row = 0; row < 16; ++row) two.cycles[row * 16] = two.cycles[row * 16 + 8] = 1'000'000;
+    CHECK(says(speedup_page("two", two), "p = 16 gains at most 100.0 % over 8 PEs"));
+}
+
+TEST_CASE("fig9 says where p = 16 is no shift, and which fold is better", "[study]") {
+    std::mt19937 random(92);
+    CHECK(says(speedup_page("random", random_costs(random, 32)),
+               "p = 16 gives the same as the column split for P = 2, 4, 8, 16."));
+    CostImage middle = even_costs(16);  // block gives all that is dear to few PEs
+    for (std::uint32_t row = 0; row < 16; ++row)
+        for (std::uint32_t column = 6; column < 10; ++column) middle.cycles[row * 16 + column] = 1000;
+    CHECK(says(speedup_page("middle", middle), "the better fold is the cyclic fold for the column split"));
+    CostImage ends = even_costs(16);  // every second column: the cyclic fold gives all of it to one of two PEs
+    for (std::uint32_t i = 0; i < 256; i += 2) ends.cycles[i] = 1000;
+    CHECK(says(speedup_page("ends", ends), "the better fold is the block fold for the column split"));
+    CHECK(says(speedup_page("even", even_costs(16)), "the better fold is none for the column split"));
+}
+
+TEST_CASE("study fig9 takes the costs of the scene that is named", "[study]") {
+    Session session(choose_device(""));
+    Laboratory lab(session, 32);
+    const std::vector<LabelledScene> glass = {embedded_scene("glass")};
+    CHECK(page_json(study_fig9(lab, glass)) == page_json(speedup_page("glass", lab.costs(glass[0], 32).trace)));
+    CHECK(study_fig9(lab, {}).settings["scene"] == "centre");
+}
+
+}  // namespace
+}  // namespace raya

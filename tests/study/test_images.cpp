@@ -1,0 +1,118 @@
+// Efficiency over many images: against plain sums, and the verdict on the paper's words both ways.
+#include <cmath>
+#include <list>
+
+#include "study/images.hpp"
+#include "study/page_writer.hpp"
+#include "study/studies.hpp"
+#include "study_cases.hpp"
+
+namespace raya {
+namespace {
+
+Costs costs_of(const std::string& label, CostImage image) {
+    Costs costs;
+    costs.label = label;
+    costs.objects = 7;
+    costs.trace = std::move(image);
+    return costs;
+}
+
+PlainLoad load_of_offset(const CostImage& image, std::uint32_t pes, std::uint32_t p) {
+    return plain_load(image, pes, [&](std::uint32_t row, std::uint32_t column) {
+        return sheared(row, column, p, image.width) % pes;
+    });
+}
+
+TEST_CASE("the images' efficiencies are mean / largest load", "[study]") {
+    constexpr unsigned kSeed = 17;
+    std::mt19937 random(kSeed);
+    for (int i = 0; i < 200; ++i) {
+        const auto pes = static_cast<std::uint32_t>(16 + random() % 10),
+                   p = static_cast<std::uint32_t>(std::sqrt(pes) + 0.5);
+        std::list<Costs> all;
+        std::vector<const Costs*> images;
+        for (const std::uint32_t side : {pes, 2 * pes})
+            for (const char* label : {"a", "b", "c"})
+                images.push_back(&all.emplace_back(costs_of(label, random_costs(random, side))));
+        CAPTURE(kSeed, i, pes, p);
+        const StudyPage page = images_page(pes, images);
+        check_page(page);
+        const StudyTable& table = table_named(page, "images");
+        REQUIRE(table.rows.size() == images.size());
+        double least = 1, most = 0;
+        for (std::size_t n = 0; n < images.size(); ++n) {
+            const PlainLoad columns = load_of_offset(images[n]->trace, pes, 0);
+            const PlainLoad cyclic = load_of_offset(images[n]->trace, pes, p);
+            CHECK(number(table.rows[n][3]) == images[n]->trace.width);
+            CHECK(number(table.rows[n][4]) == columns.imbalance());
+            CHECK(number(table.rows[n][5]) == columns.efficiency());
+            CHECK(number(table.rows[n][6]) == cyclic.imbalance());
+            CHECK(number(table.rows[n][7]) == cyclic.efficiency());
+            least = std::min(least, columns.efficiency());
+            most = std::max(most, columns.efficiency());
+        }
+        CHECK(page.comparisons[2].ours == least);
+        CHECK(page.comparisons[3].ours == most);
+        REQUIRE(page.plots[0].series.size() == 4);
+        for (const PlotSeries& series : page.plots[0].series) CHECK(series.x == std::vector<double>{1, 2, 3});
+    }
+}
+
+// A block of 4 x 4: for p = 4 a dear pixel for each of 16 PEs.
+CostImage dear_block(std::uint32_t side) {
+    CostImage image = even_costs(side);
+    for (std::uint32_t i = 0; i < 16; ++i) image.cycles[(5 + i / 4) * side + 6 + i % 4] = 1000;
+    return image;
+}
+
+// All that is dear lies on the pixels that PE 0 has for p = 4.
+CostImage dear_lattice(std::uint32_t side) {
+    CostImage image = even_costs(side);
+    for (std::uint32_t row = 0; row < side; ++row) image.cycles[row * side + row * 4 % side] = 1000;
+    return image;
+}
+
+TEST_CASE("the images' verdict on the paper's words goes both ways", "[study]") {
+    const Costs even = costs_of("even", even_costs(16)), block = costs_of("block", dear_block(16)),
+                lattice = costs_of("lattice", dear_lattice(16));
+    const StudyPage as_paper = images_page(16, {&even, &block});
+    CHECK(says(as_paper, "The column split varies strongly, as the paper says"));
+    CHECK(says(as_paper, "the cyclic mapping is high for all, as the paper says"));
+    CHECK(says(as_paper, "It is never below the column split on 2 images."));
+    const StudyPage against = images_page(16, {&even, &lattice});
+    CHECK(says(against, "The column split does not vary strongly, against what the paper says"));
+    CHECK(says(against, "the cyclic mapping is not high for all, against what the paper says"));
+    CHECK(says(against, "The cyclic mapping's lowest is lattice at 16 x 16"));
+    CHECK(says(against, "The column split is the better one for 1 of 2 images."));
+    CHECK(says(images_page(16, {&even}), "does not vary strongly"));
+}
+
+TEST_CASE("the images' first is set beside the paper only where it is the paper's case", "[study]") {
+    const Costs centre = costs_of("centre", even_costs(256)), other = costs_of("other", even_costs(256)),
+                small = costs_of("centre", even_costs(32));
+    CHECK(images_page(256, {&centre}).comparisons[0].paper);
+    CHECK_FALSE(images_page(256, {&other}).comparisons[0].paper);
+    CHECK_FALSE(images_page(32, {&small}).comparisons[0].paper);
+}
+
+TEST_CASE("study images takes ten scenes at two sizes", "[study]") {
+    Session session(choose_device(""));
+    Laboratory lab(session, 16);
+    const StudyPage page = study_images(lab, {});
+    check_page(page);
+    const StudyTable& table = table_named(page, "images");
+    REQUIRE(table.rows.size() == 20);
+    const std::vector<LabelledScene> scenes = paper_like_scenes();
+    for (std::size_t n = 0; n < 20; ++n) {
+        CHECK(std::get<std::string>(table.rows[n][1]) == scenes[n % 10].label);
+        CHECK(std::get<std::int64_t>(table.rows[n][2]) ==
+              static_cast<std::int64_t>(scenes[n % 10].scene.object_count()));
+        CHECK(number(table.rows[n][3]) == (n < 10 ? 16 : 32));
+    }
+    const PlainLoad last = load_of_offset(lab.costs(scenes[9], 32).trace, 16, 4);
+    CHECK(number(table.rows[19][7]) == last.efficiency());
+}
+
+}  // namespace
+}  // namespace raya
