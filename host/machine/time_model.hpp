@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
+#include "machine/communication.hpp"
+#include "machine/load.hpp"
 #include "machine/machine.hpp"
-#include "report/communication.hpp"
-#include "report/load.hpp"
 
 namespace raya {
 

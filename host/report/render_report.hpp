@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "cl/profile.hpp"
+#include "machine/communication.hpp"
+#include "machine/load.hpp"
 #include "machine/machine.hpp"
 #include "machine/time_model.hpp"
-#include "report/communication.hpp"
-#include "report/load.hpp"
 
 namespace raya {
 

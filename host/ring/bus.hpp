@@ -4,7 +4,7 @@
 #include <span>
 
 #include "cl/commands.hpp"
-#include "report/communication.hpp"
+#include "machine/communication.hpp"
 
 namespace raya {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "cl/commands.hpp"
-#include "report/communication.hpp"
+#include "machine/communication.hpp"
 #include "ring/route.hpp"
 
 namespace raya {

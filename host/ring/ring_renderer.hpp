@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "image/image.hpp"
+#include "machine/load.hpp"
 #include "machine/machine.hpp"
-#include "report/load.hpp"
 #include "ring/antialias.hpp"
 #include "ring/bus.hpp"
 #include "ring/contrast.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "report/load.hpp"
+#include "machine/load.hpp"
 #include "ring/cost_image.hpp"
 #include "ring/mapping.hpp"
 

@@ -1,4 +1,4 @@
-#include "report/load.hpp"
+#include "machine/load.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "report/load.hpp"
+#include "machine/load.hpp"
 
 using namespace raya;
 
