@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/parse.hpp"
 #include "cli/studies.hpp"
@@ -21,18 +22,17 @@ namespace {
 namespace fs = std::filesystem;
 
 struct LaboratoryCommand {
-    std::string folder, size, device;
+    std::string folder, device;
+    std::optional<std::uint32_t> size;
     std::vector<std::string> scenes;
 };
 
 std::uint32_t side_of(const LaboratoryCommand& command) {
-    if (command.size.empty()) return 0;
-    const std::vector<std::uint32_t> size = parse_image_size(command.size);
-    if (size[0] != size[1]) throw UserError(fmt::format("--size {}: the studies take square images", command.size));
-    constexpr std::uint32_t kSmallest = 16, kLargest = 4096;
-    if (size[0] < kSmallest || size[0] > kLargest)
-        throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", command.size, kSmallest, kLargest));
-    return size[0];
+    constexpr std::uint32_t kSmallest = 17, kLargest = 4096;  // the paper's offset 16 must be one of the image's
+    if (!command.size) return 0;
+    if (*command.size < kSmallest || *command.size > kLargest)
+        throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kSmallest, kLargest));
+    return *command.size;
 }
 
 std::vector<LabelledScene> named_scenes(const LaboratoryCommand& command) {
@@ -60,8 +60,8 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted
     for (const Study& study : wanted)
         for (const char* end : {".md", ".json"}) files.push_back(study.name + end);
     if (wanted.size() > 1) files.emplace_back("index.md");
+    Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
     prepare_folder(command.folder, files);
-    Session session(choose_device(command.device));
     Laboratory laboratory(session, side);
     std::vector<StudyPage> pages;
     for (const Study& study : wanted) {
@@ -82,7 +82,7 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
         ->type_name("DIR");
     command->add_option("SCENE", options->scenes, "Scenes in NFF; default: the study's own")->type_name("SCENE.nff");
     command
-        ->add_option("--size", options->size, "Image size in pixels a side, 16..4096; default: the study's, mostly 256")
+        ->add_option("--size", options->size, "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");
     command
         ->add_option("--device", options->device,

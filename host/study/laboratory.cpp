@@ -37,9 +37,13 @@ NumberFormat format_for(const Scene& scene) {
 }
 
 const Costs& Laboratory::costs(const LabelledScene& scene, std::uint32_t size, AntialiasMethod method) {
-    std::unique_ptr<Costs>& known = known_[{scene.label, size, method}];
-    if (!known) known = std::make_unique<Costs>(render_costs(session_, scene, size, method));
-    return *known;
+    for (const Known& known : known_)
+        if (known.size == size && known.method == method && known.scene.label == scene.label &&
+            known.scene.scene == scene.scene)
+            return *known.costs;
+    auto costs = std::make_unique<Costs>(render_costs(session_, scene, size, method));
+    known_.push_back({scene, size, method, std::move(costs)});
+    return *known_.back().costs;
 }
 
 double spa_ms(double cycles) { return cycles * machine_named("spa").cycle_ns.value() * 1e-6; }

@@ -1,10 +1,9 @@
 // Where the studies of static load distribution get their material: what each pixel of a scene costs.
 #pragma once
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "cl/commands.hpp"
 #include "machine/machine.hpp"
@@ -43,13 +42,20 @@ class Laboratory {
     std::uint32_t size(std::uint32_t usual) const { return size_ ? size_ : usual; }
     Session& session() { return session_; }
 
-    /// Throws UserError, DeviceError as RingRenderer does.
+    /// Stays valid as long as the laboratory. Throws UserError, DeviceError as RingRenderer does.
     const Costs& costs(const LabelledScene& scene, std::uint32_t size, AntialiasMethod method = AntialiasMethod::kNone);
 
   private:
+    struct Known {
+        LabelledScene scene;  // a label alone does not tell scenes apart: a user's file may be called "centre"
+        std::uint32_t size;
+        AntialiasMethod method;
+        std::unique_ptr<Costs> costs;  // stays where it is when others come
+    };
+
     Session& session_;
     std::uint32_t size_;
-    std::map<std::tuple<std::string, std::uint32_t, AntialiasMethod>, std::unique_ptr<Costs>> known_;
+    std::vector<Known> known_;
 };
 
 /// Milliseconds that a PE of the SPA takes for so many modelled cycles, no factor.

@@ -1,0 +1,100 @@
+// raya study of the load laboratory, as a user runs it: the files that it leaves, and what it refuses without a trace.
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/refusals.hpp"
+
+namespace raya {
+namespace {
+
+using Files = std::set<std::string>;
+
+Files files_in(const std::filesystem::path& folder) {
+    Files files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) files.insert(entry.path().filename());
+    return files;
+}
+
+Words study(const std::string& name, const ScratchFolder& outputs, const Words& options = {}) {
+    Words arguments = {"study", name, "-o", outputs / "made/x"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return arguments;
+}
+
+const Surroundings kNoPython{.variables = {{"RAYA_PYTHON", "/nonexistent"}}};
+
+TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[cli]") {
+    const ScratchFolder outputs;
+    const Outcome run = run_raya(study("fig8", outputs, {"--size", "32"}), kNoPython);
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK(run.err.empty());
+    for (const char* part :
+         {"u(0)", "u(8)", "u(16)", "best p of all 32", "no plots", "/nonexistent", "python3-matplotlib", "fig8.md"})
+        CHECK_THAT(run.out, Catch::Contains(part));
+    const std::filesystem::path folder = outputs / "made/x";
+    CHECK(files_in(folder) == Files{"fig8.csv", "fig8.json", "fig8.md"});
+    const auto json = nlohmann::json::parse(file_contents(folder / "fig8.json"));
+    CHECK(json["study"] == "fig8");
+    CHECK(json["settings"] == nlohmann::json{{"scene", "centre"}, {"size", 32}, {"pes", 32}});
+    CHECK(json["tables"][0]["rows"].size() == 32);
+    const std::string csv = file_contents(folder / "fig8.csv"), markdown = file_contents(folder / "fig8.md");
+    CHECK(csv.starts_with("p,u\n0,"));
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 33);
+    CHECK_THAT(markdown, Catch::Contains("| u(0) | 1.5798 |") && Catch::Contains("Not drawn"));
+}
+
+TEST_CASE("a study with matplotlib has its plots, else the reason why not", "[cli]") {
+    const ScratchFolder outputs;
+    const Outcome run = run_raya(study("fig7", outputs, {"--size", "20"}));
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    Files expected = {"fig7.csv", "fig7.json", "fig7.md"};
+    if (!contains(run.out, "no plots: ")) expected.insert({"fig7.svg", "fig7.png"});
+    CHECK(files_in(outputs / "made/x") == expected);
+}
+
+TEST_CASE("a study takes a scene of one's own", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string name = GENERATE("fig7", "fig8", "fig12", "fig13");
+    const Outcome run = run_raya(study(name, outputs, {scene_file("glass"), "--size", "20"}), kNoPython);
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    const auto json = nlohmann::json::parse(file_contents(outputs / "made/x" / (name + ".json")));
+    CHECK(json["settings"]["scene"] == scene_file("glass"));
+    CHECK(json["settings"]["size"] == 20);
+    CHECK_FALSE(contains(run.out, "calibrated"));
+}
+
+TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind", "[cli]") {
+    const ScratchFolder outputs;
+    check_refused(outputs, study("fig6", outputs), 2, {"no study 'fig6'", "fig7, fig8", "fig12", "fig13", "all"});
+    for (const char* size : {"0", "8", "16", "5000"})
+        check_refused(outputs, study("fig8", outputs, {"--size", size}), 2,
+                      {std::string("--size ") + size + ":", "17..4096"});
+    for (const char* size : {"32x16", "-1", "1e2", "wide", ""})
+        check_refused(outputs, study("fig8", outputs, {"--size", size}), 2, {"--size"});
+    check_refused(outputs, study("fig8", outputs, {"--size", "99999999999"}), 2, {"--size", "99999999999"});
+    check_refused(outputs, study("fig8", outputs, {outputs / "none.nff"}), 2, {"none.nff", "cannot read"});
+    check_refused(outputs, study("fig8", outputs, {scene_file("glass"), outputs / "none.nff"}), 2, {"none.nff"});
+    check_refused(outputs, {"study", "fig8"}, 2, {"--output is required"});
+    check_refused(outputs, {"study", "fig8", "-o", ""}, 2, {"--output", "must not be empty"});
+    check_refused(outputs, study("fig8", outputs, {"--device", "no such device"}), 3, {"no such device"});
+}
+
+TEST_CASE("a study refuses a folder that it cannot make or write before it renders", "[cli]") {
+    const ScratchFolder outputs;
+    check_refused(outputs, {"study", "fig8", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot make the folder"});
+    const ScratchFolder closed;
+    ::chmod(closed.path().c_str(), 0555);
+    for (const char* name : {"fig8", "all"})
+        check_refused(closed, {"study", name, "-o", closed.path(), "--size", "32"}, 2, {"not writable"},
+                      {.variables = {}, .as_nobody = true});
+    ::chmod(closed.path().c_str(), 0755);
+}
+
+}  // namespace
+}  // namespace raya

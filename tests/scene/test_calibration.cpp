@@ -1,0 +1,37 @@
+// The promise of scenes/README.md: the main scene is as uneven as the paper's, and by the figures printed there.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+#include "cli/run_program.hpp"
+#include "ring/mapping.hpp"
+#include "ring/ring_renderer.hpp"
+#include "study/scenes.hpp"
+
+namespace raya {
+namespace {
+
+RingResult render_on_spa(Session& session, const Scene& scene, std::uint32_t p) {
+    RingSettings settings;
+    settings.machine = machine_named("spa");
+    settings.format = settings.machine.format;
+    settings.bounces = settings.machine.bounces;
+    settings.mapping = make_mapping("cyclic", 256, 256, settings.machine.pes.value(), p, "cyclic");
+    return RingRenderer(session, scene, settings).render();
+}
+
+TEST_CASE("the centre scene has the imbalance on which it was calibrated", "[calibration]") {
+    Session session(choose_device(""));
+    const Scene scene = embedded_scene("centre").scene;
+    const Load columns = render_on_spa(session, scene, 0).all.load, cyclic = render_on_spa(session, scene, 16).all.load;
+    CHECK(columns.per_pe.size() == 256);
+    CHECK(columns.mean == cyclic.mean);
+    CHECK(columns.imbalance >= 1.55);
+    CHECK(columns.imbalance <= 1.61);
+    const std::string readme = file_contents(RAYA_SOURCE_DIR "/scenes/README.md");
+    CHECK_THAT(readme, Catch::Contains(fmt::format("**{:.3f}**", columns.imbalance)));
+    CHECK_THAT(readme, Catch::Contains(fmt::format("**{:.3f}**", cyclic.imbalance)));
+}
+
+}  // namespace
+}  // namespace raya
