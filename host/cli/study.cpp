@@ -76,8 +76,8 @@ void study_formats(const FormatsCommand& command) {
     const FormatsSettings settings = formats_settings(command);
     const std::vector<LabelledScene> scenes = scenes_of(command);
     const fs::path folder = command.folder;
+    Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
     prepare_folder(folder, {"formats.csv", "formats.json", "formats.md"});
-    Session session(choose_device(command.device));
     const FormatsStudy study = run_with_progress(session, scenes, settings);
     write_whole_file(folder / "formats.csv", formats_csv(study));
     write_whole_file(folder / "formats.json", formats_json(study).dump(2) + "\n");

@@ -54,6 +54,10 @@ void print_page(const StudyPage& page, const PlotOutcome& plots, const fs::path&
 }
 
 void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted) {
+    if (wanted.size() == 1 && wanted.front().one_scene && command.scenes.size() > 1)
+        throw UserError(
+            fmt::format("study {} takes one scene, {} were given: run it for each, into a folder of its own",
+                        wanted.front().name, command.scenes.size()));
     const std::uint32_t side = side_of(command);
     const std::vector<LabelledScene> scenes = named_scenes(command);
     std::vector<std::string> files;
@@ -80,7 +84,12 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
     command->add_option("-o,--output", options->folder, "Folder for Markdown, CSV, JSON and plots; made if missing")
         ->required()
         ->type_name("DIR");
-    command->add_option("SCENE", options->scenes, "Scenes in NFF; default: the study's own")->type_name("SCENE.nff");
+    command
+        ->add_option("SCENE", options->scenes,
+                     wanted.size() > 1 ? "Scenes in NFF; studies of one scene take the first; default: each study's own"
+                     : wanted.front().one_scene ? "Scene in NFF; default: centre, the paper's kind"
+                                                : "Scenes in NFF; default: the study's own")
+        ->type_name("SCENE.nff");
     command
         ->add_option("--size", options->size, "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");

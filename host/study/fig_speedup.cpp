@@ -150,7 +150,7 @@ std::vector<Comparison> comparisons_of(const Speedups& s) {
     const double most = s.grid[more - 1], least = s.grid[fewer - 1];
     return {{fmt::format("speed-up on {} PEs, p = 16", s.width), "", paper(paper::kSpeedup16), s.cyclic.back(), ""},
             {fmt::format("speed-up on {} PEs, p = 0", s.width), "", paper(paper::kSpeedup0), s.columns.back(),
-             "the paper's from its tables; ours calibrated on: see scenes/README.md"},
+             "the paper's from its tables; centre at 256 x 256 is calibrated on its u(0)"},
             {fmt::format("CAP's mapping, {0} x {0} PEs over {1} x {1}", more, fewer), "", paper(paper::kCapRatio),
              most / least, "the paper's from the makers of CAP, who had another scene"},
             {fmt::format("Pixel Machine's mapping, {0} x {0} PEs", fewer), "", paper(paper::kPixelMachineSpeedup),

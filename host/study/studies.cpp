@@ -6,20 +6,21 @@ namespace raya {
 
 std::span<const Study> studies() {
     static const std::array<Study, 13> all = {{
-        {"fig7", "Load of each PE, column split and cyclic mapping", study_fig7},
-        {"fig8", "Imbalance against the offset p", study_fig8},
-        {"fig9", "Speed-up against the number of PEs, both folds, and the mappings of CAP and Pixel Machine",
+        {"fig7", "Load of each PE, column split and cyclic mapping", true, study_fig7},
+        {"fig8", "Imbalance against the offset p", true, study_fig8},
+        {"fig9", "Speed-up against the number of PEs, both folds, and the mappings of CAP and Pixel Machine", true,
          study_fig9},
-        {"table2", "Times of the SPA with 256 PEs and with one, and of this machine", study_table2},
-        {"table3", "What the 3 x 3 filter costs", study_table3},
-        {"table4", "What supersampling costs, in both readings of the paper", study_table4},
-        {"fig12", "Load of each PE in supersampling", study_fig12},
-        {"fig13", "Imbalance against the offset p in supersampling", study_fig13},
-        {"images", "Efficiency of column split and cyclic mapping over ten scenes, two sizes", study_images},
-        {"lattice", "Are offsets beyond the square root of P worse?", study_lattice},
-        {"scale", "16 to 1,048,576 PEs, up to one for each pixel", study_scale},
-        {"static-vs-dynamic", "Static mappings against dynamic and hybrid distribution", study_static_vs_dynamic},
-        {"best-offset", "The best offset for your scene, communication in the balance", study_best_offset},
+        {"table2", "Times of the SPA with 256 PEs and with one, and of this machine", true, study_table2},
+        {"table3", "What the 3 x 3 filter costs", true, study_table3},
+        {"table4", "What supersampling costs, in both readings of the paper", true, study_table4},
+        {"fig12", "Load of each PE in supersampling", true, study_fig12},
+        {"fig13", "Imbalance against the offset p in supersampling", true, study_fig13},
+        {"images", "Efficiency of column split and cyclic mapping over ten scenes, two sizes", false, study_images},
+        {"lattice", "Are offsets beyond the square root of P worse?", false, study_lattice},
+        {"scale", "16 to 1,048,576 PEs, up to one for each pixel", true, study_scale},
+        {"static-vs-dynamic", "Static mappings against dynamic and hybrid distribution", false,
+         study_static_vs_dynamic},
+        {"best-offset", "The best offset for your scene, communication in the balance", false, study_best_offset},
     }};
     return all;
 }

@@ -12,6 +12,7 @@ namespace raya {
 /// A study by name. `scenes` are those that the user named; empty: the study's own.
 struct Study {
     std::string name, summary;
+    bool one_scene;  // takes the first of several
     StudyPage (*run)(Laboratory& laboratory, const std::vector<LabelledScene>& scenes);
 };
 

@@ -79,7 +79,9 @@ TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind"
         check_refused(outputs, study("fig8", outputs, {"--size", size}), 2, {"--size"});
     check_refused(outputs, study("fig8", outputs, {"--size", "99999999999"}), 2, {"--size", "99999999999"});
     check_refused(outputs, study("fig8", outputs, {outputs / "none.nff"}), 2, {"none.nff", "cannot read"});
-    check_refused(outputs, study("fig8", outputs, {scene_file("glass"), outputs / "none.nff"}), 2, {"none.nff"});
+    check_refused(outputs, study("images", outputs, {scene_file("glass"), outputs / "none.nff"}), 2, {"none.nff"});
+    check_refused(outputs, study("fig8", outputs, {scene_file("glass"), scene_file("cones")}), 2,
+                  {"fig8 takes one scene", "2 were given"});
     check_refused(outputs, {"study", "fig8"}, 2, {"--output is required"});
     check_refused(outputs, {"study", "fig8", "-o", ""}, 2, {"--output", "must not be empty"});
     check_refused(outputs, study("fig8", outputs, {"--device", "no such device"}), 3, {"no such device"});
