@@ -41,19 +41,59 @@ StudyTable table_of(const std::string& name, const std::vector<double>& u) {
     return table;
 }
 
+// u of every offset, and the offsets that stand out.
+struct Imbalances {
+    std::vector<double> u;
+    std::size_t best = 0, best_near = 0;  // of all offsets; of 0..16
+
+    explicit Imbalances(std::vector<double> of_offsets) : u(std::move(of_offsets)) {
+        best = static_cast<std::size_t>(std::min_element(u.begin(), u.end()) - u.begin());
+        const auto near_end = u.begin() + static_cast<std::ptrdiff_t>(shown());
+        best_near = static_cast<std::size_t>(std::min_element(u.begin(), near_end) - u.begin());
+    }
+    std::size_t shown() const { return std::min<std::size_t>(kBest + 1, u.size()); }
+    double at(std::uint32_t p) const { return u[p % u.size()]; }
+};
+
+std::vector<Comparison> comparisons_of(const Imbalances& i, bool first, bool calibrated) {
+    const auto paper = [&](double value) { return first ? std::optional<double>(value) : std::nullopt; };
+    const auto value_of = [&](std::size_t p) { return fmt::format("u = {:.3f}", i.u[p]); };
+    return {{"u(0)", "", paper(paper::kImbalance0), i.at(0), calibrated ? "calibrated on: see scenes/README.md" : ""},
+            {"u(8)", "", {}, i.at(kGood), first ? "the paper: \"already good\"" : ""},
+            {"u(16)", "", paper(paper::kImbalance16), i.at(kBest), ""},
+            {"best p of 0..16", "", paper(kBest), double(i.best_near), value_of(i.best_near)},
+            {fmt::format("best p of all {}", i.u.size()), "", {}, double(i.best), value_of(i.best)}};
+}
+
+std::vector<StudyPlot> plots_of(const Imbalances& i, const Pass& pass, const std::string& label, bool first) {
+    StudyPlot near{pass.name, fmt::format("Imbalance against the offset, {}", pass.phase), "offset p (pixels)", "u"};
+    StudyPlot all{pass.name + "-all", fmt::format("Imbalance against every offset, {}", pass.phase), near.x_label, "u"};
+    all.log_y = true;
+    near.series = {series_of(label, i.u, i.shown(), PlotStyle::kLine)};
+    all.series = {series_of(label, i.u, i.u.size(), PlotStyle::kLine)};
+    if (first)
+        for (StudyPlot* plot : {&near, &all})
+            plot->series.push_back(
+                {"paper, from its tables", {0, kBest}, {paper::kImbalance0, paper::kImbalance16}, PlotStyle::kPaper});
+    return {near, all};
+}
+
+std::vector<std::string> findings_of(const Imbalances& i) {
+    const auto better = std::count_if(i.u.begin(), i.u.end(), [&](double value) { return value < i.at(kBest); });
+    return {
+        fmt::format("u is {:.3f} at p = 0, {:.3f} at p = 8 and {:.3f} at p = 16.", i.at(0), i.at(kGood), i.at(kBest)),
+        fmt::format("Of the offsets 0..16 p = {} is best, u = {:.3f}; of all {} p = {}, u = {:.3f}. {} offsets are "
+                    "better than p = 16.",
+                    i.best_near, i.u[i.best_near], i.u.size(), i.best, i.u[i.best], better)};
+}
+
 StudyPage imbalance_page(Laboratory& lab, const std::vector<LabelledScene>& scenes, const Pass& pass) {
     const LabelledScene scene = scenes.empty() ? embedded_scene("centre") : scenes.front();
     const std::uint32_t size = lab.size(256);
-    const Costs& costs = lab.costs(scene, size, pass.method);
     const bool first = pass.method == AntialiasMethod::kNone, calibrated = first && scenes.empty() && size == 256;
+    const Costs& costs = lab.costs(scene, size, pass.method);
     const CostImage& image = first ? costs.trace : costs.supersample;
-    const std::vector<double> u = imbalance_of_offsets(image, size, RAYA_FOLD_CYCLIC, all_offsets(size));
-    const auto at = [&](std::uint32_t p) { return u[p % size]; };
-    const std::size_t shown = std::min<std::size_t>(17, size);
-    const auto best = static_cast<std::uint32_t>(std::min_element(u.begin(), u.end()) - u.begin());
-    const auto best_near = static_cast<std::uint32_t>(
-        std::min_element(u.begin(), u.begin() + static_cast<std::ptrdiff_t>(shown)) - u.begin());
-    const auto better = std::count_if(u.begin(), u.end(), [&](double value) { return value < at(kBest); });
+    const Imbalances imbalances(imbalance_of_offsets(image, size, RAYA_FOLD_CYCLIC, all_offsets(size)));
 
     StudyPage page;
     page.name = pass.name;
@@ -64,37 +104,10 @@ StudyPage imbalance_page(Laboratory& lab, const std::vector<LabelledScene>& scen
                    "u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the "
                    "sum of its pixels' modelled cycles."};
     page.settings = {{"scene", scene.label}, {"size", size}, {"pes", size}};
-    const auto paper = [&](double value) { return first ? std::optional<double>(value) : std::nullopt; };
-    page.comparisons = {
-        {"u(0)", "", paper(paper::kImbalance0), at(0), calibrated ? "calibrated on: see scenes/README.md" : ""},
-        {"u(8)", "", {}, at(kGood), first ? "the paper: \"already good\"" : ""},
-        {"u(16)", "", paper(paper::kImbalance16), at(kBest), ""},
-        {"best p of 0..16", "", first ? std::optional<double>(16) : std::nullopt, double(best_near),
-         fmt::format("u = {:.3f}", u[best_near])},
-        {fmt::format("best p of all {}", size), "", {}, double(best), fmt::format("u = {:.3f}", u[best])}};
-    page.tables = {table_of(pass.name, u)};
-    StudyPlot near{
-        pass.name, fmt::format("Imbalance against the offset, {}", pass.phase), "offset p (pixels)", "u", false,
-        false,     {series_of(scene.label, u, shown, PlotStyle::kLine)}};
-    StudyPlot all{pass.name + "-all",
-                  fmt::format("Imbalance against every offset, {}", pass.phase),
-                  "offset p (pixels)",
-                  "u",
-                  false,
-                  true,
-                  {series_of(scene.label, u, size, PlotStyle::kLine)}};
-    if (first) {
-        const PlotSeries printed{
-            "paper, from its tables", {0, 16}, {paper::kImbalance0, paper::kImbalance16}, PlotStyle::kPaper};
-        near.series.push_back(printed);
-        all.series.push_back(printed);
-    }
-    page.plots = {near, all};
-    page.findings = {fmt::format("u falls from {:.3f} at p = 0 to {:.3f} at p = 8 and {:.3f} at p = 16.", at(0),
-                                 at(kGood), at(kBest)),
-                     fmt::format("Of the offsets 0..16 p = {} is best, u = {:.3f}; of all {} p = {}, u = {:.3f}. {} "
-                                 "offsets are better than p = 16.",
-                                 best_near, u[best_near], size, best, u[best], better)};
+    page.comparisons = comparisons_of(imbalances, first, calibrated);
+    page.tables = {table_of(pass.name, imbalances.u)};
+    page.plots = plots_of(imbalances, pass, scene.label, first);
+    page.findings = findings_of(imbalances);
     return page;
 }
 

@@ -34,7 +34,7 @@ StudyTable loads_table(const std::string& name, const Load& columns, const Load&
     return table;
 }
 
-// Highest of the `width` PEs around the middle over the mean of all, and the same of as many PEs at both ends.
+// Mean load of the PEs `first` to `last` - 1, over that of all.
 double mean_between(const Load& load, std::size_t first, std::size_t last) {
     double sum = 0;
     for (std::size_t pe = first; pe < last; ++pe) sum += static_cast<double>(load.per_pe[pe]);
@@ -46,11 +46,39 @@ struct Pass {
     AntialiasMethod method;
 };
 
+std::vector<Comparison> comparisons_of(const Load& columns, const Load& cyclic, bool first, bool calibrated) {
+    const auto paper = [&](double value) { return first ? std::optional<double>(value) : std::nullopt; };
+    return {{"mean load", "ms", paper(paper::kMeanMs), spa_ms(columns.mean), "no factor fitted"},
+            {"largest load, p = 0", "ms", paper(paper::kTrace0Ms), spa_ms(static_cast<double>(columns.max)), ""},
+            {"largest load, p = 16", "ms", paper(paper::kTrace16Ms), spa_ms(static_cast<double>(cyclic.max)), ""},
+            {"u(0)", "", paper(paper::kImbalance0), columns.imbalance,
+             calibrated ? "calibrated on: see scenes/README.md" : ""},
+            {"u(16)", "", paper(paper::kImbalance16), cyclic.imbalance, ""}};
+}
+
+std::string finding_of(const Load& columns, const Load& cyclic, std::uint32_t p) {
+    const std::size_t size = columns.per_pe.size(), eighth = size / 8, middle = size / 2;
+    return fmt::format(
+        "With columns the PEs of the middle quarter carry {:.2f} times the mean load and those of the outer quarter "
+        "{:.2f} times; with p = {} the lightest PE carries {:.2f} times and the heaviest {:.2f} times the mean.",
+        mean_between(columns, middle - eighth, middle + eighth),
+        (mean_between(columns, 0, eighth) + mean_between(columns, size - eighth, size)) / 2, p,
+        static_cast<double>(cyclic.min) / cyclic.mean, static_cast<double>(cyclic.max) / cyclic.mean);
+}
+
+StudyPlot plot_of(const Pass& pass, const Load& columns, const Load& cyclic) {
+    StudyPlot plot{pass.name, fmt::format("Load of each PE, {}", pass.phase), "PE", "load (modelled ms)"};
+    plot.series = {loads_series("p = 0, column split", columns), loads_series("p = 16, cyclic mapping", cyclic),
+                   mean_series(columns)};
+    return plot;
+}
+
 StudyPage loads_page(Laboratory& lab, const std::vector<LabelledScene>& scenes, const Pass& pass) {
     const LabelledScene scene = scenes.empty() ? embedded_scene("centre") : scenes.front();
     const std::uint32_t size = lab.size(256), p = kOffset % size;
+    const bool first = pass.method == AntialiasMethod::kNone, calibrated = first && scenes.empty() && size == 256;
     const Costs& costs = lab.costs(scene, size, pass.method);
-    const CostImage& image = pass.method == AntialiasMethod::kSupersample ? costs.supersample : costs.trace;
+    const CostImage& image = first ? costs.trace : costs.supersample;
     const Load columns = static_load(image, make_mapping("cyclic", size, size, size, 0, "cyclic"));
     const Load cyclic = static_load(image, make_mapping("cyclic", size, size, size, p, "cyclic"));
 
@@ -63,32 +91,10 @@ StudyPage loads_page(Laboratory& lab, const std::vector<LabelledScene>& scenes, 
                     pass.phase),
         "Loads are the sums of the modelled cycles that the kernels counted for each pixel, at 100 ns a cycle."};
     page.settings = {{"scene", scene.label}, {"size", size}, {"pes", size}, {"offsets", {0, p}}};
-    const bool first = pass.method == AntialiasMethod::kNone, calibrated = first && scenes.empty() && size == 256;
-    const auto paper = [&](double value) { return first ? std::optional<double>(value) : std::nullopt; };
-    page.comparisons = {
-        {"mean load", "ms", paper(paper::kMeanMs), spa_ms(columns.mean), "no factor fitted"},
-        {"largest load, p = 0", "ms", paper(paper::kTrace0Ms), spa_ms(static_cast<double>(columns.max)), ""},
-        {"largest load, p = 16", "ms", paper(paper::kTrace16Ms), spa_ms(static_cast<double>(cyclic.max)), ""},
-        {"u(0)", "", paper(paper::kImbalance0), columns.imbalance,
-         calibrated ? "calibrated on: see scenes/README.md" : ""},
-        {"u(16)", "", paper(paper::kImbalance16), cyclic.imbalance, ""}};
+    page.comparisons = comparisons_of(columns, cyclic, first, calibrated);
     page.tables = {loads_table(pass.name, columns, cyclic)};
-    page.plots = {{pass.name,
-                   fmt::format("Load of each PE, {}", pass.phase),
-                   "PE",
-                   "load (modelled ms)",
-                   false,
-                   false,
-                   {loads_series("p = 0, column split", columns), loads_series("p = 16, cyclic mapping", cyclic),
-                    mean_series(columns)}}};
-    const std::size_t eighth = size / 8, middle = size / 2;
-    page.findings = {
-        fmt::format("With columns the PEs of the middle quarter carry {:.2f} times the mean load and those of the "
-                    "outer quarter {:.2f} "
-                    "times; with p = {} the lightest PE carries {:.2f} times and the heaviest {:.2f} times the mean.",
-                    mean_between(columns, middle - eighth, middle + eighth),
-                    (mean_between(columns, 0, eighth) + mean_between(columns, size - eighth, size)) / 2, p,
-                    static_cast<double>(cyclic.min) / cyclic.mean, static_cast<double>(cyclic.max) / cyclic.mean)};
+    page.plots = {plot_of(pass, columns, cyclic)};
+    page.findings = {finding_of(columns, cyclic, p)};
     return page;
 }
 

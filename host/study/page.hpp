@@ -37,7 +37,7 @@ struct StudyPlot {
     std::string title;
     std::string x_label, y_label;  // with units
     bool log_x = false, log_y = false;
-    std::vector<PlotSeries> series;
+    std::vector<PlotSeries> series{};
 };
 
 /// One figure that the paper printed, or might have, beside ours. The ratio ours / paper is made when it is written.
