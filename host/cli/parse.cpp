@@ -42,6 +42,14 @@ std::vector<std::uint32_t> parse_voxels(const std::string& text) {
     return sides;
 }
 
+void add_device_option(CLI::App& command, std::string& device) {
+    command
+        .add_option("--device", device,
+                    "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
+                    "GPU, else the first CPU")
+        ->type_name("NAME");
+}
+
 void refuse_odd_values(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const std::string type = option->get_type_name();

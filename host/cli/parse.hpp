@@ -20,6 +20,9 @@ std::vector<std::uint32_t> parse_image_size(const std::string& text);
 /// Voxels along x, y and z: "4x4x4". UserError as above.
 std::vector<std::uint32_t> parse_voxels(const std::string& text);
 
+/// Adds --device: which one, see choose_device().
+void add_device_option(CLI::App& command, std::string& device);
+
 /// Makes every option of `command` refuse an empty value, and those that take whole numbers anything but digits: the
 /// parser would take the first as not given and wrap negative numbers round.
 void refuse_odd_values(CLI::App& command);

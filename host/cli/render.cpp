@@ -69,11 +69,8 @@ std::optional<Antialiasing> antialiasing(const RingSettings& settings, const Rin
 std::optional<ModelledTime> modelled(const RingSettings& settings, const RingResult& result) {
     std::vector<Load> loads;
     for (const Phase& phase : result.phases) loads.push_back(phase.load);
-    const std::uint32_t share = largest_share(settings.mapping);
-    SmoothingCycles smoothing;
-    if (settings.antialias.method == AntialiasMethod::kFilter) smoothing.filter = filter_cycles(share);
-    if (settings.antialias.method == AntialiasMethod::kSupersample) smoothing.compare = compare_cycles(share);
-    return modelled_time(settings.machine, loads, result.communication, 1, smoothing);
+    return modelled_time(settings.machine, loads, result.communication, 1,
+                         smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
 }
 
 RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device,

@@ -23,7 +23,9 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's, or A*B of a grid")
         ->type_name("P");
     command
-        .add_option("--offset", o.offset, "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W)")
+        .add_option("--offset", o.offset,
+                    "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W), 0 on machines with a "
+                    "mapping of their own")
         ->type_name("p");
     command
         .add_option(
@@ -65,11 +67,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                     "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
         ->type_name("axes|diagonals")
         ->default_str("axes");
-    command
-        .add_option("--device", o.device,
-                    "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
-                    "GPU, else the first CPU")
-        ->type_name("NAME");
+    add_device_option(command, o.device);
     command
         .add_option("--lanes", o.lanes,
                     "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: the device's float vectors")

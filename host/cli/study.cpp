@@ -95,11 +95,7 @@ void add_timing_options(CLI::App& command, FormatsCommand& options) {
         .add_option("--lanes", options.lanes,
                     "Rays that a work-item traces at once: 1, 4, 8 or 16; default: the device's")
         ->type_name("V");
-    command
-        .add_option("--device", options.device,
-                    "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
-                    "GPU, else the first CPU")
-        ->type_name("NAME");
+    add_device_option(command, options.device);
 }
 
 void add_formats_study(CLI::App& study) {

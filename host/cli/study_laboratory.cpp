@@ -93,11 +93,7 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
     command
         ->add_option("--size", options->size, "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");
-    command
-        ->add_option("--device", options->device,
-                     "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
-                     "GPU, else the first CPU")
-        ->type_name("NAME");
+    add_device_option(*command, options->device);
     refuse_odd_values(*command);
     command->callback([options, wanted] { run_studies(*options, wanted); });
 }

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "error.hpp"
+#include "machine/budget.hpp"
 #include "ring/mapping.hpp"
 
 namespace raya {
@@ -34,6 +35,13 @@ void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool d
         "--antialias {} with --mapping {}: random: neighbours live on PEs all over the ring; choose cyclic, "
         "column, rows, blocks, grid or tiles",
         antialias_name(method), mapping_text(mapping)));
+}
+
+SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share) {
+    SmoothingCycles cycles;
+    if (method == AntialiasMethod::kFilter) cycles.filter = filter_cycles(share);
+    if (method == AntialiasMethod::kSupersample) cycles.compare = compare_cycles(share);
+    return cycles;
 }
 
 raya_u32 parse_points(const std::string& text) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "machine/time_model.hpp"
 #include "shared/neighbours.h"
 
 namespace raya {
@@ -28,5 +29,8 @@ void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool d
 /// "axes", "diagonals" as RAYA_POINTS_*; UserError names the legal values.
 raya_u32 parse_points(const std::string& text);
 std::string points_name(raya_u32 points);
+
+/// Cycles that a PE whose share has `share` pixels spends on the method's arithmetic between neighbours.
+SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share);
 
 }  // namespace raya

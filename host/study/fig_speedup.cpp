@@ -10,6 +10,7 @@
 
 #include "ring/mapping.hpp"
 #include "ring/schedule.hpp"
+#include "study/arrays.hpp"
 #include "study/laboratory.hpp"
 #include "study/paper.hpp"
 #include "study/studies.hpp"
@@ -30,8 +31,6 @@ struct Speedups {
     double at(const std::vector<double>& series, std::uint32_t pes) const { return series[pes - 1]; }
 };
 
-std::uint32_t root_of(std::uint32_t pes) { return static_cast<std::uint32_t>(std::lround(std::sqrt(pes))); }
-
 // The loads of a PE for each slot, as an image of one row: with no more PEs than slots every PE has whole ones.
 CostImage slots_of(const CostImage& image, std::uint32_t offset) {
     const raya_mapping mapping = make_mapping("cyclic", image.width, image.height, image.width, offset, "cyclic");
@@ -49,7 +48,7 @@ Speedups speedups_of(const CostImage& image) {
     Speedups s;
     s.width = w;
     for (std::uint32_t pes = 1; pes <= w; ++pes) {
-        if (pes == 1 || root_of(pes) != root_of(pes - 1)) root = slots_of(image, root_of(pes));
+        if (pes == 1 || root_offset(pes) != root_offset(pes - 1)) root = slots_of(image, root_offset(pes));
         s.columns.push_back(speedup_of(columns, pes, "cyclic"));
         s.columns_block.push_back(speedup_of(columns, pes, "block"));
         s.cyclic.push_back(speedup_of(cyclic, pes, "cyclic"));

@@ -9,6 +9,7 @@
 
 #include "ring/mapping.hpp"
 #include "ring/schedule.hpp"
+#include "study/arrays.hpp"
 #include "study/laboratory.hpp"
 #include "study/studies.hpp"
 
@@ -40,13 +41,6 @@ struct Scale {
     double largest = 0;                     // pixel, in mean pixels
 };
 
-// A x B = 2^n, A = B or B / 2.
-std::string grid_text(std::uint32_t pes) {
-    std::uint32_t rows = 1;
-    while (rows * rows * 4 <= pes) rows *= 2;
-    return fmt::format("grid:{}x{}", rows, pes / rows);
-}
-
 // p of a cyclic mapping, rounded. Where P > W the PEs of a slot take its rows in turn, so the rows of a PE are P / W
 // apart; the next of its pixels lies sqrt(W W / P) to the side, a square's side, for p = W / sqrt(P).
 std::uint32_t offset_of(int way, std::uint32_t side, std::uint32_t pes) {
@@ -59,7 +53,7 @@ std::uint32_t offset_of(int way, std::uint32_t side, std::uint32_t pes) {
 }
 
 raya_mapping mapping_of(int way, std::uint32_t side, std::uint32_t pes) {
-    const std::string name = way == kGrid ? grid_text(pes) : way == kRandom ? "random:1" : "cyclic";
+    const std::string name = way == kGrid ? squarest_grid(pes) : way == kRandom ? "random:1" : "cyclic";
     return make_mapping(name, side, side, pes, offset_of(way, side, pes), way >= kFixedBlock ? "block" : "cyclic");
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "error.hpp"
-#include "machine/budget.hpp"
 #include "ring/mapping.hpp"
 #include "ring/schedule.hpp"
 #include "study/paper.hpp"
@@ -45,13 +44,6 @@ SpaRun run_on_spa(Session& session, const LabelledScene& scene, std::uint32_t si
 
 ModelledTime spa_time(const SpaRun& run, double factor) {
     return modelled_time(machine_named("spa"), run.phases, run.communication, factor, run.smoothing).value();
-}
-
-SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share) {
-    SmoothingCycles cycles;
-    if (method == AntialiasMethod::kFilter) cycles.filter = filter_cycles(share);
-    if (method == AntialiasMethod::kSupersample) cycles.compare = compare_cycles(share);
-    return cycles;
 }
 
 double fitted_factor(const CostImage& trace) {

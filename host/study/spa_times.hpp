@@ -28,9 +28,6 @@ SpaRun run_on_spa(Session& session, const LabelledScene& scene, std::uint32_t si
 /// The SPA's modelled time for the run, computing multiplied by `factor`.
 ModelledTime spa_time(const SpaRun& run, double factor = 1);
 
-/// Arithmetic between neighbours of a PE that owns `share` pixels, as a method needs it.
-SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share);
-
 /// The one factor of Tables 2, 3 and 4: what one DSP of the paper took for a pixel of its scene (Table 2) over what the
 /// model gives for a pixel of this first pass. At the paper's size that is 64,800 ms over one PE's modelled time.
 double fitted_factor(const CostImage& trace);

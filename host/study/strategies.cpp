@@ -6,19 +6,10 @@
 #include <numeric>
 
 #include "ring/mapping.hpp"
+#include "study/arrays.hpp"
 
 namespace raya {
 namespace {
-
-std::uint32_t root_of(std::uint32_t pes) { return static_cast<std::uint32_t>(std::lround(std::sqrt(pes))); }
-
-// A rows of B PEs, A the largest divisor of P up to its root.
-std::string squarest_grid(std::uint32_t pes) {
-    std::uint32_t rows = 1;
-    for (std::uint32_t a = 1; a * a <= pes; ++a)
-        if (pes % a == 0) rows = a;
-    return fmt::format("grid:{}x{}", rows, pes / rows);
-}
 
 Strategy fixed(const std::string& name, const std::string& mapping) {
     return {name, StrategyKind::kStatic, mapping, {}};
@@ -53,7 +44,7 @@ std::vector<Strategy> strategies(std::uint32_t size, std::uint32_t pes, std::uin
     std::vector<Strategy> all = {
         fixed("column split", "column"),
         fixed("cyclic, p = 16", fmt::format("cyclic:{}", kOffset % size)),
-        fixed("cyclic, p = sqrt(P)", fmt::format("cyclic:{}", root_of(pes) % size)),
+        fixed("cyclic, p = sqrt(P)", fmt::format("cyclic:{}", root_offset(pes) % size)),
         fixed("blocks of scan lines", "blocks"),
         fixed("tiles 8 x 8", fmt::format("tiles:{}x{}", tile, tile)),
         fixed("grid", squarest_grid(pes)),

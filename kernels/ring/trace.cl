@@ -93,7 +93,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of each pixel that was traced now
            __global ulong* restrict events)          // [PE][work-item][RAYA_EVENTS], added to
 {
-    // An argument, not a __local variable: where a function is not inlined, PoCL 3.1 gives it another variable than the kernel's.
+    // An argument, not a __local variable: with PoCL 3.1 pixels were lost where a function that took its address was not inlined.
     volatile __local uint* next = memory;
     const uint pe = get_group_id(0), item = get_local_id(0);
     if (item == 0) *next = begin;
