@@ -49,11 +49,17 @@ void Session::check_range(const std::string& label, const std::string& buffer, s
 }
 
 void Session::check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
-                           std::size_t count, std::size_t blocks) {
-    check_range(label, buffer, at.pitch, at.offset, count);
-    if (at.pitch > 0 && blocks > size / at.pitch) {
-        throw std::out_of_range(fmt::format("'{}': {} blocks of {} elements do not lie in buffer '{}' of {}", label,
-                                            blocks, at.pitch, buffer, size));
+                           std::size_t count, std::size_t blocks, std::size_t slabs) {
+    if (count == 0 || blocks == 0 || slabs == 0) return;
+    // Blocks and slabs lie one behind the other.
+    const bool apart =
+        (blocks == 1 || count <= at.pitch) && (slabs == 1 || (blocks - 1) * at.pitch + count <= at.slab_pitch);
+    const std::size_t last = (slabs - 1) * at.slab_pitch + (blocks - 1) * at.pitch + count;
+    if (!apart || at.offset > size || last > size - at.offset) {
+        throw std::out_of_range(fmt::format(
+            "'{}': {} elements from {} on of each of {} blocks {} apart, in {} slabs {} apart, do not lie in "
+            "buffer '{}' of {}",
+            label, count, at.offset, blocks, at.pitch, slabs, at.slab_pitch, buffer, size));
     }
 }
 
@@ -106,14 +112,15 @@ void Session::copy_bytes(const std::string& label, const Place& from, const Plac
            });
 }
 
-void Session::copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
-                        std::size_t to_pitch, std::size_t bytes, std::size_t rows) {
-    if (bytes == 0 || rows == 0) return;
-    submit(fmt::format("'{}': copying {} rows of {} bytes of buffer '{}' into buffer '{}'", label, rows, bytes,
-                       from.name, to.name),
-           {.label = label, .kind = "copy", .bytes = bytes * rows}, [&](cl::Event* event) {
+void Session::copy_rows(const std::string& label, const Place& from, const Blocks& from_at, const Place& to,
+                        const Blocks& to_at, const Rows& size) {
+    if (size.bytes == 0 || size.rows == 0 || size.slabs == 0) return;
+    submit(fmt::format("'{}': copying {} x {} rows of {} bytes of buffer '{}' into buffer '{}'", label, size.slabs,
+                       size.rows, size.bytes, from.name, to.name),
+           {.label = label, .kind = "copy", .bytes = size.bytes * size.rows * size.slabs}, [&](cl::Event* event) {
                queue_.enqueueCopyBufferRect(from.memory, to.memory, {from.offset, 0, 0}, {to.offset, 0, 0},
-                                            {bytes, rows, 1}, from_pitch, 0, to_pitch, 0, nullptr, event);
+                                            {size.bytes, size.rows, size.slabs}, from_at.pitch, from_at.slab_pitch,
+                                            to_at.pitch, to_at.slab_pitch, nullptr, event);
            });
 }
 

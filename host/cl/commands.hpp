@@ -74,21 +74,22 @@ class Session {
                    {to.memory(), to.name(), to_offset * sizeof(T)}, count * sizeof(T));
     }
 
-    /// Where the blocks of a buffer lie: `pitch` elements from one to the next; a range starts at element `offset` of
-    /// each.
+    /// Where the blocks of a buffer lie: `pitch` elements from one to the next, the first range at element `offset`;
+    /// `slab_pitch` elements from one slab of blocks to the next.
     struct Blocks {
-        std::size_t offset = 0, pitch = 0;
+        std::size_t offset = 0, pitch = 0, slab_pitch = 0;
     };
 
-    /// Device to device, between different buffers: `count` elements of each of `blocks` blocks. Does not wait.
+    /// Device to device, between different buffers: `count` elements of each of `blocks` blocks in each of `slabs`
+    /// slabs. Does not wait.
     template <class T>
     void copy_blocks(const std::string& label, const Buffer<T>& from, Blocks from_at, Buffer<T>& to, Blocks to_at,
-                     std::size_t count, std::size_t blocks) {
-        check_blocks(label, from.name(), from.size(), from_at, count, blocks);
-        check_blocks(label, to.name(), to.size(), to_at, count, blocks);
-        copy_rows(label, {from.memory(), from.name(), from_at.offset * sizeof(T)}, from_at.pitch * sizeof(T),
-                  {to.memory(), to.name(), to_at.offset * sizeof(T)}, to_at.pitch * sizeof(T), count * sizeof(T),
-                  blocks);
+                     std::size_t count, std::size_t blocks, std::size_t slabs = 1) {
+        check_blocks(label, from.name(), from.size(), from_at, count, blocks, slabs);
+        check_blocks(label, to.name(), to.size(), to_at, count, blocks, slabs);
+        copy_rows(label, {from.memory(), from.name(), from_at.offset * sizeof(T)}, in_bytes(from_at, sizeof(T)),
+                  {to.memory(), to.name(), to_at.offset * sizeof(T)}, in_bytes(to_at, sizeof(T)),
+                  {count * sizeof(T), blocks, slabs});
     }
 
     /// Sets every element of `to` to `value`. Does not wait.
@@ -121,8 +122,14 @@ class Session {
 
     static void check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
                             std::size_t count);
+    struct Rows {  // of a copy, and in how many slabs they lie
+        std::size_t bytes, rows, slabs;
+    };
+    static Blocks in_bytes(const Blocks& b, std::size_t size) {
+        return {b.offset * size, b.pitch * size, b.slab_pitch * size};
+    }
     static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
-                             std::size_t count, std::size_t blocks);
+                             std::size_t count, std::size_t blocks, std::size_t slabs);
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
     void launch_kernel(const std::string& label, const cl::Kernel& kernel, const std::string& kernel_name,
                        std::size_t groups, std::size_t group_size, std::size_t local_bytes);
@@ -131,8 +138,8 @@ class Session {
     void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                     std::size_t bytes, void* to);
     void copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes);
-    void copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
-                   std::size_t to_pitch, std::size_t bytes, std::size_t rows);
+    void copy_rows(const std::string& label, const Place& from, const Blocks& from_at, const Place& to,
+                   const Blocks& to_at, const Rows& size);
     void fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
                     const void* value, std::size_t value_bytes);
 

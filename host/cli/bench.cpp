@@ -11,9 +11,9 @@
 #include "cli/render_options.hpp"
 #include "embedded.hpp"
 #include "error.hpp"
+#include "kernels/kernel_options.hpp"
 #include "report/render_report.hpp"
 #include "report/table.hpp"
-#include "ring/kernel_options.hpp"
 #include "ring/operation_rates.hpp"
 #include "scene/nff_reader.hpp"
 

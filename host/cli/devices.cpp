@@ -6,8 +6,8 @@
 #include "cl/device.hpp"
 #include "cli/commands.hpp"
 #include "error.hpp"
+#include "kernels/kernel_options.hpp"
 #include "report/table.hpp"
-#include "ring/kernel_options.hpp"
 
 namespace raya {
 namespace {

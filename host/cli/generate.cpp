@@ -1,6 +1,8 @@
 // raya generate: scenes that a program makes.
 #include "scene/generate.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -14,7 +16,7 @@ namespace {
 
 struct GenerateOptions {
     std::string output;
-    int level = 4, count = 0;
+    int level = 4, size = 12, count = 0;
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
 };
@@ -39,6 +41,15 @@ void add_generate_command(CLI::App& program) {
         ->capture_default_str();
     balls->callback([options] { write_whole_file(options->output, write_nff(generate_balls(options->level))); });
 
+    CLI::App* lattice =
+        add_kind(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube");
+    lattice
+        ->add_option("--size", options->size,
+                     "Cylinders N along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
+        ->type_name("N")
+        ->capture_default_str();
+    lattice->callback([options] { write_whole_file(options->output, write_nff(generate_lattice(options->size))); });
+
     CLI::App* uniform =
         add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube");
     uniform->add_option("N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
@@ -46,7 +57,8 @@ void add_generate_command(CLI::App& program) {
         ->type_name("XxYxZ")
         ->required();
     uniform->callback([options] {
-        const auto sides = parse_voxels(options->voxels);
+        const auto sides =
+            parse_three_sides("--voxels", options->voxels, fmt::format("1..{} each", kMostVoxelsAlongAxis));
         const Scene scene = generate_uniform(
             options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
         write_whole_file(options->output, write_nff(scene));
@@ -64,7 +76,7 @@ void add_generate_command(CLI::App& program) {
     CLI::App* centre =
         add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
     centre->callback([options] { write_whole_file(options->output, write_nff(generate_centre())); });
-    for (CLI::App* kind : {balls, uniform, random, centre}) refuse_odd_values(*kind);
+    for (CLI::App* kind : {balls, lattice, uniform, random, centre}) refuse_odd_values(*kind);
 }
 
 }  // namespace raya

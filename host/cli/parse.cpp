@@ -7,7 +7,6 @@
 
 #include "error.hpp"
 #include "ring/mapping.hpp"
-#include "scene/generate.hpp"
 
 namespace raya {
 
@@ -35,11 +34,22 @@ std::vector<std::uint32_t> parse_image_size(const std::string& text) {
     return sides;
 }
 
-std::vector<std::uint32_t> parse_voxels(const std::string& text) {
-    std::vector<std::uint32_t> sides = parse_sizes(text);
+std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
+                                               const std::string& legal) {
+    const std::vector<std::uint32_t> sides = parse_sizes(text);
+    if (sides.size() != 3) throw UserError(fmt::format("{} {}: must be XxYxZ, {}", option, text, legal));
+    return {sides[0], sides[1], sides[2]};
+}
+
+Accel parse_accel(const std::string& text) {
+    if (text == "none") return {};
+    if (text == "grid") return {.grid = true, .divisions = {}};
+    const std::vector<std::uint32_t> sides =
+        text.starts_with("grid:") ? parse_sizes(text.substr(5)) : std::vector<std::uint32_t>{};
     if (sides.size() != 3)
-        throw UserError(fmt::format("--voxels {}: must be XxYxZ, 1..{} each", text, kMostVoxelsAlongAxis));
-    return sides;
+        throw UserError(
+            fmt::format("--accel {}: must be none, grid or grid:AxBxC, A B C voxels along x, y and z", text));
+    return {.grid = true, .divisions = Divisions{sides[0], sides[1], sides[2]}};
 }
 
 void add_device_option(CLI::App& command, std::string& device) {
@@ -54,7 +64,7 @@ void refuse_odd_values(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const std::string type = option->get_type_name();
         if (option->get_type_size() == 0) continue;  // a flag
-        const bool whole = type == "N" || type == "P" || type == "p" || type == "V" || type == "L";
+        const bool whole = type == "N" || type == "P" || type == "p" || type == "V" || type == "L" || type == "BYTES";
         option->check([whole](const std::string& value) -> std::string {
             if (value.empty()) return "must not be empty";
             const bool digits = value.find_first_not_of("0123456789") == std::string::npos;

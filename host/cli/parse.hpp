@@ -1,8 +1,11 @@
 // Option values that are more than one number.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "grid/accel.hpp"
 
 namespace CLI {
 class App;
@@ -17,8 +20,12 @@ std::vector<std::uint32_t> parse_sizes(const std::string& text);
 /// later.
 std::vector<std::uint32_t> parse_image_size(const std::string& text);
 
-/// Voxels along x, y and z: "4x4x4". UserError as above.
-std::vector<std::uint32_t> parse_voxels(const std::string& text);
+/// Three numbers, along x, y and z: "4x4x4". UserError names the option and its legal values, "1..256 each".
+std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
+                                               const std::string& legal);
+
+/// --accel: "none", "grid" or "grid:AxBxC". UserError as above.
+Accel parse_accel(const std::string& text);
 
 /// Adds --device: which one, see choose_device().
 void add_device_option(CLI::App& command, std::string& device);

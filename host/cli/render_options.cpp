@@ -43,7 +43,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--format", o.format,
                     "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
-                    "fraction bits, t truncates; default: the machine's, fp32 on grande, e6m15 on the others")
+                    "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the others")
         ->type_name("NAME");
     command.add_option("--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
         ->type_name("N");
@@ -67,6 +67,21 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                     "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
         ->type_name("axes|diagonals")
         ->default_str("axes");
+    command
+        .add_option(
+            "--accel", o.accel,
+            "grid: rays walk through voxels inside each PE's memory and meet the objects listed there, the same hits "
+            "sooner; A "
+            "x B x C voxels along x, y, z, by default some for each object; none: every ray is tested against all "
+            "objects")
+        ->type_name("none|grid[:AxBxC]")
+        ->capture_default_str();
+    command
+        .add_option(
+            "--pe-memory", o.pe_memory,
+            "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "
+            "4194304 on torus, no limit on grande")
+        ->type_name("BYTES");
     add_device_option(command, o.device);
     command
         .add_option("--lanes", o.lanes,
@@ -128,23 +143,56 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, std::uint32_t w
 
 }  // namespace
 
-RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
-    RingSettings settings;
-    settings.machine = machine_named(o.machine);
-    settings.format = o.format.empty() ? settings.machine.format : parse_format(o.format);
-    if (o.sampling != "centres" && o.sampling != "corners")
-        throw UserError(fmt::format("--sampling {}: must be centres or corners", o.sampling));
+std::vector<std::uint32_t> image_size(const RenderOptions& o, const Scene& scene) {
     std::vector<std::uint32_t> size = {static_cast<std::uint32_t>(scene.view.width),
                                        static_cast<std::uint32_t>(scene.view.height)};
     if (!o.size.empty()) size = parse_image_size(o.size);
+    if (size[0] > kLargestSide || size[1] > kLargestSide)
+        throw UserError(fmt::format("--size {}x{}: both sides must be 1..{} pixels", size[0], size[1], kLargestSide));
+    return size;
+}
+
+std::optional<std::uint64_t> pe_memory_of(const RenderOptions& o, const Machine& machine) {
+    if (o.pe_memory == 0u) throw UserError("--pe-memory 0: must be 1 byte or more");
+    return o.pe_memory ? o.pe_memory : machine.pe_memory_bytes;
+}
+
+NumberFormat format_of(const RenderOptions& o, const Machine& machine) {
+    return o.format.empty() ? machine.format : parse_format(o.format);
+}
+
+Sampling sampling_of(const RenderOptions& o) {
+    if (o.sampling != "centres" && o.sampling != "corners")
+        throw UserError(fmt::format("--sampling {}: must be centres or corners", o.sampling));
+    return o.sampling == "corners" ? Sampling::kCorners : Sampling::kCentres;
+}
+
+KernelChoice kernel_choice(const RenderOptions& o) {
+    if (o.lanes == 0u || o.group == 0u) throw UserError("--lanes and --group must be 1 or more");
+    KernelChoice choice;
+    choice.lanes = o.lanes.value_or(0);
+    choice.group_size = o.group.value_or(0);
+    choice.kernel_dir = o.kernel_dir;
+    return choice;
+}
+
+RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
+    RingSettings settings;
+    settings.machine = machine_named(o.machine);
+    if (settings.machine.divides_scene())
+        throw UserError(
+            fmt::format("--machine {}: its nodes hold voxels of the scene, not pixels; only raya render takes it, "
+                        "choose a ring: spa",
+                        o.machine));
+    settings.format = format_of(o, settings.machine);
+    settings.sampling = sampling_of(o);
+    const std::vector<std::uint32_t> size = image_size(o, scene);
     set_mapping(settings, o, size[0], size[1]);
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
-    settings.sampling = o.sampling == "corners" ? Sampling::kCorners : Sampling::kCentres;
     settings.antialias = antialias_settings(o);
-    if (o.lanes == 0u || o.group == 0u) throw UserError("--lanes and --group must be 1 or more");
-    settings.kernels.lanes = o.lanes.value_or(0);
-    settings.kernels.group_size = o.group.value_or(0);
-    settings.kernels.kernel_dir = o.kernel_dir;
+    settings.accel = parse_accel(o.accel);
+    settings.machine.pe_memory_bytes = pe_memory_of(o, settings.machine);
+    settings.kernels = kernel_choice(o);
     return settings;
 }
 

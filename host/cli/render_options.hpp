@@ -1,8 +1,9 @@
-// The options of a render on the ring machine, shared by the commands that render.
+// The options of a render, shared by the commands that render; those of the torus alone are in cli/torus_options.hpp.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cl/device.hpp"
 #include "ring/ring_renderer.hpp"
@@ -17,15 +18,27 @@ namespace raya {
 /// As given on the command line; what is empty follows the machine, the scene or the device.
 struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
-                       points, kernel_dir;
+                       points, kernel_dir, accel = "none";
     std::optional<double> threshold;
+    std::optional<std::uint64_t> pe_memory;  // bytes
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
 /// Adds the options with their help texts: unit, default, legal range.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-/// What the renderer needs. UserError names the option that is out of range.
+// What --size, --format, --sampling, --lanes and --group say, for any machine. UserError names the option.
+
+/// Width and height, each 1..16384; the scene's where --size is empty.
+std::vector<std::uint32_t> image_size(const RenderOptions& options, const Scene& scene);
+NumberFormat format_of(const RenderOptions& options, const Machine& machine);
+Sampling sampling_of(const RenderOptions& options);
+KernelChoice kernel_choice(const RenderOptions& options);
+/// Bytes of a PE's memory: --pe-memory, else the machine's; empty: no limit.
+std::optional<std::uint64_t> pe_memory_of(const RenderOptions& options, const Machine& machine);
+
+/// What the ring renderer needs. UserError names the option that is out of range, and refuses a machine that is no
+/// ring.
 RingSettings ring_settings(const RenderOptions& options, const Scene& scene);
 
 }  // namespace raya

@@ -112,6 +112,22 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .moves = 2 + 1 + 2,
      .branches = 1,
      .why = "x^n as 2^(n log2 x); both series have fp32's length, 16 bits would do with one term less each"},
+    // 1 / D: three divisions; into and out of the box: 6 planes of 2 and 4 comparisons; the first voxel: 3 of (O + t D,
+    // minus corner, times 1 / cell, whole: 4); its far sides: 3 of (plane: 1, minus O: 1, times 1 / D: 1). Moves: voxel
+    // numbers and signs of D. Branches: misses the box, and the sign of each component
+    {.event = RAYA_WALKS,
+     .multiply_accumulates = 6 * 2 + 4 + 3 * 4 + 3 * 3,
+     .divisions = 3,
+     .moves = 6,
+     .branches = 1 + 3,
+     .why = "a ray is clipped to the box and finds its first voxel"},
+    // smallest of three: 2 comparisons, voxel: 1, next plane: 1, minus O: 1, times 1 / D: 1, nearest hit against the
+    // voxel's far side: 1. Moves: start and end of the voxel's list. Branches: which axis 2, left the box, done
+    {.event = RAYA_STEPS,
+     .multiply_accumulates = 2 + 1 + 1 + 1 + 1 + 1,
+     .moves = 2,
+     .branches = 2 + 1 + 1,
+     .why = "the next voxel (Amanatides & Woo 1987, with the plane's place made anew in place of their addition)"},
 }};
 
 constexpr bool in_order() {

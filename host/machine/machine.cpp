@@ -7,6 +7,7 @@
 
 #include "error.hpp"
 #include "machine/budget.hpp"
+#include "machine/t805.hpp"
 
 namespace raya {
 namespace {
@@ -62,6 +63,23 @@ Machine spa1() {
     return machine;
 }
 
+// Yoshitani & Yamazaki, about 1995. Marks: [P] printed there, [T] data sheet of the T805, [?] ours. What a node and its
+// links take is in machine/t805.hpp; the rates here are those of one link, one way.
+Machine torus() {
+    Machine machine;
+    machine.name = "torus";
+    machine.title = "the torus of transputers";
+    machine.topology = "torus3d";                         // [P] a torus; [?] six links, the T805 has four
+    machine.pes = 64;                                     // [P] T805s, one voxel each: 4 x 4 x 4
+    machine.pe_memory_bytes = 4 * 1024 * 1024;            // [?] of a T805 board
+    machine.bounces = 8;                                  // [?] as on the SPA; the paper stops at shadows
+    machine.format = {};                                  // [T] IEEE, single precision
+    machine.mapping = "voxels";                           // [P]
+    machine.cycle_ns = kT805CycleNs;                      // [T] 25 MHz
+    machine.link_words_per_s = kT805OneWayBytesPerS / 4;  // [T]
+    return machine;
+}
+
 }  // namespace
 
 const std::vector<Machine>& machines() {
@@ -75,6 +93,7 @@ const std::vector<Machine>& machines() {
         array_like("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array", 64, "grid:8x8"),
         // [P] each PE takes the next pixel from a root when it has finished; [?] as many PEs as the SPA has
         array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", 256, "dynamic:1"),
+        torus(),
     };
     return all;
 }

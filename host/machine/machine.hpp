@@ -21,10 +21,14 @@ struct Machine {
     std::string topology;                          // how the PEs are joined
     std::optional<std::uint32_t> pes;              // empty: as many as the image has columns
     std::uint32_t offset = 0;                      // p of the cyclic mapping
-    std::optional<std::uint32_t> pe_memory_bytes;  // empty: no limit
+    std::optional<std::uint64_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
     NumberFormat format{};           // that its PEs compute in
-    std::string mapping = "cyclic";  // pixels to PEs, as --mapping takes it
+    std::string mapping = "cyclic";  // pixels to PEs, as --mapping takes it; "voxels" where the scene is divided
+
+    /// Whether its PEs are nodes of a torus, which hold voxels of the scene and send rays to each other (host/torus/).
+    /// Such a machine has no mapping, and rings cannot be made of it.
+    bool divides_scene() const { return mapping == "voxels"; }
 
     // Rates of the time model (machine/time_model.hpp); empty where they are not known.
     std::optional<double> cycle_ns;          // of a PE, one multiply-accumulate
@@ -39,8 +43,8 @@ const std::vector<Machine>& machines();
 /// The machine of that name; UserError lists those there are.
 const Machine& machine_named(const std::string& name);
 
-/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h): those of its instruction budget
-/// (machine/budget.hpp).
+/// Modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA: those of its
+/// instruction budget (machine/budget.hpp). A torus's nodes have t805_cycles() (machine/t805.hpp).
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events();
 
 }  // namespace raya

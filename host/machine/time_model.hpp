@@ -28,6 +28,18 @@ struct ModelledTime {
     double factor = 1;            // that compute_ms was multiplied by
 };
 
+/// Of a torus, in milliseconds (host/torus/torus_time.hpp). A real machine lies between `overlapped` and `stepwise`: it
+/// neither overlaps all nor waits every time. The scene's way to the nodes and the image's way from the root to the
+/// host are not in it.
+struct TorusTime {
+    double compute_ms = 0;     // of the node that computes most
+    double messages_ms = 0;    // processor's part of sending and receiving, of the node that has most of it
+    double processor_ms = 0;   // of the node that has most of both together
+    double links_ms = 0;       // of the link that has most to carry, both ways
+    double overlapped_ms = 0;  // from below: no processor and no link ever waits for another one
+    double stepwise_ms = 0;    // every superstep waits for its busiest node, then for its busiest link
+};
+
 /// Empty where the machine's rates are not known. The phases' loads, one at least, are those of all PEs; the machine
 /// waits for the busiest PE of each phase. `factor` > 0 is for cycles that the budget does not see; who fits it has to
 /// report it.

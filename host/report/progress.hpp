@@ -1,9 +1,13 @@
-// A progress bar for a person at a terminal.
+// How far a render has come, and a progress bar for a person at a terminal.
 #pragma once
 #include <chrono>
 #include <cstdio>
+#include <functional>
 
 namespace raya {
+
+/// Called now and then with the share of the pixels that are done, 0..1.
+using ProgressCallback = std::function<void(double)>;
 
 /// Draws on stderr, only if that is a terminal, and only from one second on. Erased when it goes out of scope.
 class ProgressBar {

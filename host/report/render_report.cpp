@@ -42,6 +42,18 @@ Json antialias_json(const std::optional<Antialiasing>& a) {
     return json;
 }
 
+Json communication_json(const Communication& c) {
+    return {{"broadcasts", c.broadcasts}, {"broadcast_words", c.broadcast_words},
+            {"rotations", c.rotations},   {"rotation_words", c.rotation_words},
+            {"gathers", c.gathers},       {"gather_words", c.gather_words}};
+}
+
+Json accel_json(const std::optional<AccelReport>& a) {
+    if (!a) return {{"kind", "none"}};
+    return {
+        {"kind", "grid"}, {"divisions", a->divisions}, {"copies", a->copies}, {"words", a->words}, {"apart", a->apart}};
+}
+
 // Operations of all that was counted, by the modelled PEs' instruction budget.
 Json budget_json(const EventCounts& events) {
     const Operations sum = operations_of(events);
@@ -78,6 +90,33 @@ Json measured_json(const RenderReport& report) {
     return {{"build_s", report.measured.build_s}, {"render_s", report.measured.render_s}, {"commands", commands}};
 }
 
+Json machine_json(const RenderReport& r) {
+    return {{"name", r.machine.name},
+            {"topology", r.machine.topology},
+            {"pes", r.machine.pes},
+            {"mapping", r.machine.mapping},
+            {"offset", r.machine.offset ? Json(*r.machine.offset) : Json()},
+            {"fold", r.machine.fold ? Json(*r.machine.fold) : Json()},
+            {"format", r.machine.format},
+            {"bounces", r.machine.bounces},
+            {"pe_memory_bytes", r.machine.pe_memory_bytes ? Json(r.machine.pe_memory_bytes) : Json()},
+            {"pe_memory_used_bytes", r.machine.pe_memory_used_bytes}};
+}
+
+void add_ring(Json& json, const RenderReport& r) {
+    json["accel"] = accel_json(r.accel);
+    json["antialias"] = antialias_json(r.antialias);
+    json["communication"] = communication_json(r.communication);
+    json["budget"] = budget_json(r.events);
+    json["modelled_ms"] = modelled_json(r.modelled);
+}
+
+void add_torus(Json& json, const RenderReport& r) {
+    json["torus"] = torus_json(*r.torus);
+    json["budget"] = t805_budget_json(r.events);
+    json["modelled_ms"] = torus_time_json(r.torus->modelled);
+}
+
 double ms(double ns) { return ns * 1e-6; }
 
 }  // namespace
@@ -88,21 +127,11 @@ std::uint64_t ray_count(const EventCounts& e) {
 
 Json to_json(const RenderReport& r) {
     const EventCounts& e = r.events;
-    const Communication& c = r.communication;
     Json json;
     json["scene"] = r.scene;
     json["image"] = {
         {"width", r.image.width}, {"height", r.image.height}, {"file", r.image.file}, {"hash", r.image.hash}};
-    json["machine"] = {{"name", r.machine.name},
-                       {"topology", r.machine.topology},
-                       {"pes", r.machine.pes},
-                       {"mapping", r.machine.mapping},
-                       {"offset", r.machine.offset ? Json(*r.machine.offset) : Json()},
-                       {"fold", r.machine.fold ? Json(*r.machine.fold) : Json()},
-                       {"format", r.machine.format},
-                       {"bounces", r.machine.bounces},
-                       {"pe_memory_bytes", r.machine.pe_memory_bytes ? Json(r.machine.pe_memory_bytes) : Json()},
-                       {"pe_memory_used_bytes", r.machine.pe_memory_used_bytes}};
+    json["machine"] = machine_json(r);
     json["device"] = {
         {"name", r.device.name},   {"platform", r.device.platform},     {"version", r.device.version},
         {"lanes", r.device.lanes}, {"group_size", r.device.group_size}, {"build_options", r.device.build_options}};
@@ -113,14 +142,14 @@ Json to_json(const RenderReport& r) {
                      {"plane", e[RAYA_PLANE_TESTS]},
                      {"polygon", e[RAYA_POLYGON_TESTS]},
                      {"cone", e[RAYA_CONE_TESTS]}};
+    json["walks"] = e[RAYA_WALKS];
+    json["steps"] = e[RAYA_STEPS];
     json["shading"] = {{"hits", e[RAYA_SHADED]}, {"lit", e[RAYA_LIT]}, {"highlights", e[RAYA_HIGHLIGHTS]}};
-    json["antialias"] = antialias_json(r.antialias);
     json["load"] = loads_json(r);
-    json["communication"] = {{"broadcasts", c.broadcasts}, {"broadcast_words", c.broadcast_words},
-                             {"rotations", c.rotations},   {"rotation_words", c.rotation_words},
-                             {"gathers", c.gathers},       {"gather_words", c.gather_words}};
-    json["budget"] = budget_json(e);
-    json["modelled_ms"] = modelled_json(r.modelled);
+    if (r.torus)
+        add_torus(json, r);
+    else
+        add_ring(json, r);
     json["measured"] = measured_json(r);
     return json;
 }
@@ -154,21 +183,46 @@ std::string model_line(const RenderReport& r) {
         t.objects_ms, t.compute_ms, t.communication_ms, t.image_ms, t.total_ms, r.machine.name);
 }
 
+// Machine and what lies where.
+std::string machine_text(const RenderReport& r) {
+    if (r.torus) return torus_machine_text(*r.torus);
+    return fmt::format("{} PEs, {} mapping{}", r.machine.pes, r.machine.mapping,
+                       r.machine.offset ? fmt::format(", offset {}", *r.machine.offset) : "");
+}
+
+std::string accel_line(const RenderReport& r) {
+    if (!r.accel) return {};
+    const AccelReport& a = *r.accel;
+    const EventCounts& e = r.events;
+    const auto rays = static_cast<double>(ray_count(e));
+    const std::uint64_t tests = e[RAYA_SPHERE_TESTS] + e[RAYA_PLANE_TESTS] + e[RAYA_POLYGON_TESTS] + e[RAYA_CONE_TESTS];
+    return fmt::format("grid    {}x{}x{} voxels, {} copies of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
+                       a.divisions[0], a.divisions[1], a.divisions[2], a.copies,
+                       a.apart ? fmt::format(", {} held apart", a.apart) : "", static_cast<double>(tests) / rays,
+                       static_cast<double>(e[RAYA_STEPS]) / rays);
+}
+
+std::string memory_line(const RenderReport& r) {
+    return fmt::format(
+        "memory  {:.1f} KB in {}{}{}\n", static_cast<double>(r.machine.pe_memory_used_bytes) / 1024,
+        r.torus ? "the fullest node" : "each PE",
+        r.machine.pe_memory_bytes ? fmt::format(" of {} KB", r.machine.pe_memory_bytes / 1024) : ", no limit",
+        r.torus ? torus_memory_text(*r.torus) : "");
+}
+
 }  // namespace
 
 std::string human_summary(const RenderReport& r) {
     const EventCounts& e = r.events;
     const std::uint64_t rays = ray_count(e);
-    std::string text = fmt::format("{}: {} x {} pixels on {} ({} PEs, {} mapping{}), {}, {} bounces\n", r.scene,
-                                   r.image.width, r.image.height, r.machine.name, r.machine.pes, r.machine.mapping,
-                                   r.machine.offset ? fmt::format(", offset {}", *r.machine.offset) : "",
-                                   r.machine.format, r.machine.bounces);
+    std::string text =
+        fmt::format("{}: {} x {} pixels on {} ({}), {}, {} bounces\n", r.scene, r.image.width, r.image.height,
+                    r.machine.name, machine_text(r), r.machine.format, r.machine.bounces);
     text += fmt::format("rays    {} = {} primary + {} reflected + {} refracted + {} shadow\n", rays, e[RAYA_PRIMARY],
                         e[RAYA_REFLECTED], e[RAYA_REFRACTED], e[RAYA_SHADOW]);
-    text += load_line("load", r.load, r.requests ? ", simulated" : "") + antialias_lines(r) + model_line(r);
-    text += fmt::format(
-        "memory  {:.1f} KB in each PE{}\n", static_cast<double>(r.machine.pe_memory_used_bytes) / 1024,
-        r.machine.pe_memory_bytes ? fmt::format(" of {} KB", r.machine.pe_memory_bytes / 1024) : ", no limit");
+    text += load_line("load", r.load, r.requests ? ", simulated" : "");
+    text += r.torus ? torus_lines(*r.torus) : antialias_lines(r) + model_line(r);
+    text += accel_line(r) + memory_line(r);
     text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {:.1f} Mrays/s on {} ({} lanes)\n",
                         r.measured.build_s, r.measured.render_s, static_cast<double>(rays) / r.measured.render_s * 1e-6,
                         r.device.name, r.device.lanes);

@@ -1,5 +1,6 @@
 // The report of one render: plain data, as JSON for programs and as a few lines for people.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "machine/load.hpp"
 #include "machine/machine.hpp"
 #include "machine/time_model.hpp"
+#include "report/torus_report.hpp"
 
 namespace raya {
 
@@ -23,6 +25,14 @@ struct Antialiasing {
     std::uint64_t recomputed = 0;   // pixels supersampled
     double recomputed_share = 0;    // of all pixels
     std::uint32_t band_pixels = 0;  // pixels of a PE that go round the ring at a time
+};
+
+/// The grid that rays walked inside a PE.
+struct AccelReport {
+    std::array<std::uint32_t, 3> divisions{};  // voxels along x, y and z
+    std::uint64_t copies = 0;                  // of objects in several voxels
+    std::uint64_t words = 0;                   // of a PE's memory that hold the grid
+    std::uint64_t apart = 0;                   // large objects that every ray is tested against
 };
 
 struct RenderReport {
@@ -55,8 +65,10 @@ struct RenderReport {
     Load load;                                        // of all phases together
     std::vector<std::pair<std::string, Load>> loads;  // of each phase, by its name
     std::optional<Antialiasing> antialias;
+    std::optional<AccelReport> accel;  // empty: every ray is tested against all objects
     Communication communication;
     std::optional<ModelledTime> modelled;  // empty: the machine's rates are not known
+    std::optional<TorusReport> torus;      // of a machine that divides the scene, in place of the four above
 
     struct {
         double build_s = 0, render_s = 0;

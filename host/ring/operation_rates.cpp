@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "cl/kernel_source.hpp"
-#include "ring/kernel_options.hpp"
+#include "kernels/kernel_options.hpp"
 
 namespace raya {
 namespace {

@@ -45,13 +45,22 @@ std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, st
     return std::clamp(affordable, std::min(8 * lanes, share), share);
 }
 
+// Local memory is as fast as a CPU's other memory, and each launch copies the words into it for each PE: where
+// they are many and few of them are read, they stay where they are.
+bool words_local(const PackedJob& job, const DeviceInfo& device, bool accel) {
+    constexpr std::size_t kMostCopied = 64 * 1024;
+    const std::size_t bytes = 4 * job.words.size() + sizeof(cl_uint);
+    return bytes <= (accel ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
+}
+
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const Scene& scene,
                              const DeviceInfo& device) {
     return {.lanes = settings.kernels.lanes,
             .group_size = settings.kernels.group_size,
             .bounces = settings.bounces,
             .format = settings.format,
-            .words_local = 4 * job.words.size() + sizeof(cl_uint) <= device.local_memory_bytes,
+            .words_local = words_local(job, device, settings.accel.grid),
+            .accel = settings.accel.grid,
             .filter = settings.kernels.filter && !scene.spheres.empty() &&
                       sphere_filter_holds(settings.format, scene_extent(scene)),
             .polygons = job.has_polygons,
@@ -86,6 +95,8 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
     : session_(session),
       settings_(checked(settings, session.device())),
       job_(pack_job(scene, job_settings(settings_))),
+      accel_(settings_.accel.grid ? append_grid(job_, accel_partition(job_, settings_.format, settings_.accel))
+                                  : AccelSummary{}),
       share_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, {.scene = scene.name,
                                                  .job_words = job_.words.size(),
@@ -105,7 +116,9 @@ void RingRenderer::build(const Scene& scene) {
     const KernelChoice& choice = settings_.kernels;
     tracer_ = std::make_unique<Tracer>(
         session_, options, choice.more_options, choice.kernel_dir, settings_.mapping.pes, memory_.block_pixels,
-        slice_pixels(settings_, scene.object_count(), options.lanes * options.group_size, memory_.block_pixels));
+        slice_pixels(settings_,
+                     settings_.accel.grid ? std::min<std::size_t>(20, scene.object_count()) : scene.object_count(),
+                     options.lanes * options.group_size, memory_.block_pixels));
     counters_.push_back(tracer_->make_counters(kTrace));
     bus_.broadcast(broadcast_, job_.words);
     tracer_->clear(counters_.front());
@@ -254,6 +267,7 @@ void RingRenderer::describe(RingResult& result) {
     result.all.name = "all";
     result.communication = communication_;
     result.pe_memory = memory_;
+    if (settings_.accel.grid) result.accel = accel_;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
     result.build_options = tracer_->build_options();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "grid/accel.hpp"
 #include "image/image.hpp"
 #include "machine/load.hpp"
 #include "machine/machine.hpp"
@@ -24,15 +25,6 @@
 
 namespace raya {
 
-/// How the kernels are built for a device. 0: chosen from the device.
-struct KernelChoice {
-    std::uint32_t lanes = 0;                // V: 1, 4, 8 or 16
-    std::uint32_t group_size = 0;           // L: 1..64 work-items
-    bool filter = true;                     // the sphere filter, where it holds: the same hits, sooner
-    std::filesystem::path kernel_dir;       // kernels from disk in place of the program's own
-    std::vector<std::string> more_options;  // appended to the build options
-};
-
 struct RingSettings {
     Machine machine;
     std::optional<DynamicPlan> dynamic;  // loads are those of a dynamic distribution, simulated from the pixels' costs
@@ -41,6 +33,7 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
+    Accel accel;
     KernelChoice kernels;
     std::uint32_t pixels_per_launch =
         0;  // of each PE; 0: as many as take about a second, so that progress can be shown
@@ -63,6 +56,7 @@ struct RingResult {
     std::optional<std::uint64_t> requests;  // of a simulated dynamic distribution
     Communication communication;
     PeMemory pe_memory;
+    std::optional<AccelSummary> accel;  // of the grid that rays walked
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
     double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
@@ -97,6 +91,7 @@ class RingRenderer {
     Session& session_;
     RingSettings settings_;  // lanes and group size chosen
     PackedJob job_;
+    AccelSummary accel_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;
     Communication communication_;

@@ -8,14 +8,12 @@
 #include <vector>
 
 #include "cl/commands.hpp"
+#include "kernels/kernel_options.hpp"
+#include "report/progress.hpp"
 #include "ring/antialias.hpp"
-#include "ring/kernel_options.hpp"
 #include "scene/packer.hpp"
 
 namespace raya {
-
-/// Called now and then with the share of the pixels that are done, 0..1.
-using ProgressCallback = std::function<void(double)>;
 
 /// What one pass counts.
 struct PassCounters {

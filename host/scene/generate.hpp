@@ -9,6 +9,7 @@
 namespace raya {
 
 inline constexpr int kHighestBallsLevel = 6;      // 597,871 spheres
+inline constexpr int kHighestLatticeSize = 64;    // 274,625 spheres, 811,200 cylinders
 inline constexpr int kMostSpheres = 1'000'000;    // of uniform and random
 inline constexpr int kMostVoxelsAlongAxis = 256;  // of uniform
 inline constexpr int kMostVoxels = 1'048'576;     // of uniform
@@ -17,6 +18,11 @@ inline constexpr int kMostVoxels = 1'048'576;     // of uniform
 /// above one square polygon, three lights. Same spheres in the same order as SPD 3.9 writes (E. Haines). Throws
 /// UserError unless 0 <= level <= 6.
 Scene generate_balls(int level);
+
+/// SPD's `lattice`: (size + 1)^3 mirroring spheres, joined by 3 size (size + 1)^2 matt cylinders along the axes to the
+/// cube [0, 1]^3, six lights. Same objects in the same order as SPD writes for its size factor (A. Costa, E.
+/// Haines). Throws UserError unless 1 <= size <= 64.
+Scene generate_lattice(int size);
 
 /// `count` matt spheres in the cube [-1, 1]^3, spread evenly over x * y * z voxels: every voxel holds floor or ceil of
 /// count / voxels, each sphere lies wholly inside its voxel, and no two touch or are alike. One light. Throws UserError

@@ -179,26 +179,26 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
         put(words, light.position);
         put(words, light_colour(scene, light));
     }
-    job.spheres = static_cast<std::uint32_t>(scene.spheres.size());
-    job.spheres_at = here();
+    job.objects.spheres = static_cast<std::uint32_t>(scene.spheres.size());
+    job.objects.spheres_at = here();
     for (const Sphere& s : scene.spheres) {
         put(words, s.centre);
         put(words, std::copysign(s.radius * s.radius, s.radius));
         words.push_back(surface_at[s.surface]);
     }
-    job.planes = static_cast<std::uint32_t>(scene.planes.size());
-    job.planes_at = here();
+    job.objects.planes = static_cast<std::uint32_t>(scene.planes.size());
+    job.objects.planes_at = here();
     for (const Plane& p : scene.planes) {
         put(words, p.normal);
         put(words, p.distance);
         words.push_back(surface_at[p.surface]);
     }
-    job.cones = static_cast<std::uint32_t>(scene.cones.size());
-    job.cones_at = here();
+    job.objects.cones = static_cast<std::uint32_t>(scene.cones.size());
+    job.objects.cones_at = here();
     for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
     const std::vector<Face> faces = faces_of(scene);
-    job.polygons = static_cast<std::uint32_t>(faces.size());
-    job.polygons_at = here();
+    job.objects.polygons = static_cast<std::uint32_t>(faces.size());
+    job.objects.polygons_at = here();
     pack_faces(words, faces, surface_at);
     if (words.size() > kMostWords)
         throw UserError(

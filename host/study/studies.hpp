@@ -36,4 +36,14 @@ StudyPage study_scale(Laboratory&, const std::vector<LabelledScene>&);          
 StudyPage study_static_vs_dynamic(Laboratory&, const std::vector<LabelledScene>&);  // Heirich & Arvo's claim
 StudyPage study_best_offset(Laboratory&, const std::vector<LabelledScene>&);        // p for the user's scene
 
+// Voxels in one machine.
+StudyPage study_divisions(Laboratory&, const std::vector<LabelledScene>&);  // Yoshitani & Yamazaki's Fig. 3
+StudyPage study_havran(Laboratory&, const std::vector<LabelledScene>&);     // tests and steps a ray, Havran & Sixta
+
+// The torus machine: Yoshitani & Yamazaki, and beyond.
+StudyPage study_objects(Laboratory&, const std::vector<LabelledScene>&);  // Fig. 4: time against objects
+StudyPage study_nodes(Laboratory&, const std::vector<LabelledScene>&);    // 1..4096 nodes
+StudyPage study_inject(Laboratory&, const std::vector<LabelledScene>&);   // the root makes all primary rays, or all do
+StudyPage study_hybrid(Laboratory&, const std::vector<LabelledScene>&);   // groups share the screen
+
 }  // namespace raya

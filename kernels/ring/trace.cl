@@ -16,6 +16,7 @@
 // group size, mapping or device.
 // Limits: a PE's share < 2^32 pixels; the cost of one pixel < 2^64 cycles; its events < 2^32 each.
 #include "ring/pixel_store.clh"
+#include "shading/camera.clh"
 #include "shading/shade.clh"
 
 #ifndef RAYA_GROUP
@@ -26,10 +27,8 @@
 static inline void start_walk(words scene, tree* t, mask fresh, real row, real column) {
     const job_words job = (job_words)scene;
     const vec zero = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));
-    const vec left = vec_mad(vec_all(job->row_step), num_round(row), vec_all(job->corner));
-    const vec through = vec_mad(vec_all(job->column_step), num_round(column), left);
     set_lanes(&t->ray.origin, fresh, vec_all(job->eye));
-    set_lanes(&t->ray.direction, fresh, vec_normalize(through));
+    set_lanes(&t->ray.direction, fresh, primary_direction(job, row, column));
     t->ray.weight.all = choose(fresh, num_const(1.0f), t->ray.weight.all);
     t->level = choose_index(fresh, (index)(0), t->level);
     t->sum = vec_choose(fresh, zero, t->sum);
@@ -65,7 +64,6 @@ static inline void next_points(words scene, tree* t, pixel_store* store, volatil
 }
 
 static inline void trace_share(words scene, pixel_store* store, volatile __local uint* next) {
-    const job_words job = (job_words)scene;
     tree t;
     clear_tree(&t);
     for (;;) {
@@ -73,9 +71,7 @@ static inline void trace_share(words scene, pixel_store* store, volatile __local
         if (!mask_any(t.walking)) return;
         const ray r = {vec_of_lanes(t.ray.origin), vec_of_lanes(t.ray.direction),
                        choose(t.walking, num_const(RAYA_FAR), num_const(0.0f))};
-        const hit h = closest_hit(scene, r);
-        count_tests(&t, job, t.walking);
-        shade(scene, &t, h);
+        shade(scene, &t, find_hit(scene, &t, t.walking, r));
     }
 }
 

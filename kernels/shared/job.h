@@ -10,11 +10,20 @@
 #include "shared/mapping.h"
 #include "shared/portable.h"
 
+// The objects of a scene, or those of a voxel: how many of each kind, and where the words of the first one start.
+typedef struct {
+    raya_u32 spheres, planes, polygons, cones;
+    raya_u32 spheres_at, planes_at, polygons_at, cones_at;
+} raya_objects;
+RAYA_SHARED_SIZE(raya_objects, 4 * 8);
+
 typedef struct {
     raya_mapping mapping;
     raya_u32 bounces;  // reflections and refractions after the primary ray
-    raya_u32 spheres, planes, polygons, cones, lights;            // how many of each
-    raya_u32 lights_at, spheres_at, planes_at, polygons_at, cones_at;
+    raya_u32 lights;   // how many
+    raya_u32 lights_at;
+    raya_objects objects;
+    raya_u32 grid_at;  // where the grid that rays walk starts; 0: none, every ray is tested against all objects
     raya_u32 cycles[RAYA_EVENTS];    // modelled cycles of one event of each kind
     float eye[3];                    // origin of the primary rays
     float corner[3];                 // unnormalised direction of the ray of row 0, column 0
@@ -23,7 +32,7 @@ typedef struct {
     float ambient;                   // intensity A
     float extent;                    // size of the scene: largest coordinate of eye and finite objects, scene units
 } raya_job;
-RAYA_SHARED_SIZE(raya_job, 4 * (5 + 1 + 5 + 5 + 13 + 17));
+RAYA_SHARED_SIZE(raya_job, 4 * (5 + 3 + 8 + 1 + RAYA_EVENTS + 17));
 
 enum {  // words of a surface
     RAYA_SURFACE_COLOUR = 0,      // r g b; colour `even` of a checker

@@ -65,6 +65,8 @@ inline std::set<std::string> fixed_keys() {
                                   "tests.plane count",
                                   "tests.polygon count",
                                   "tests.cone count",
+                                  "walks count",
+                                  "steps count",
                                   "shading.hits count",
                                   "shading.lit count",
                                   "shading.highlights count",

@@ -13,7 +13,7 @@
 
 #include "cl/commands.hpp"
 #include "cl/kernel_source.hpp"
-#include "ring/kernel_options.hpp"
+#include "kernels/kernel_options.hpp"
 
 namespace raya {
 
@@ -21,8 +21,11 @@ namespace raya {
 struct Variant {
     std::uint32_t lanes = 1;
     bool optimised = true;
+    NumberFormat format{};
 
-    std::string name() const { return fmt::format("{} lanes{}", lanes, optimised ? "" : ", -cl-opt-disable"); }
+    std::string name() const {
+        return fmt::format("{} {} lanes{}", format_name(format), lanes, optimised ? "" : ", -cl-opt-disable");
+    }
 };
 
 /// The first is the one that the others are compared with.
@@ -37,8 +40,8 @@ inline constexpr std::size_t kMostLanes = 16;
 
 class KernelRunner {
   public:
-    /// Builds a file of tests/kernels/. Throws std::runtime_error where it is missing, DeviceError where it does not
-    /// build.
+    /// Builds a file, given from tests/kernels/ on. Throws std::runtime_error where it is missing, DeviceError where it
+    /// does not build.
     KernelRunner(const std::string& file, const Variant& variant)
         : lanes_(variant.lanes), session_(choose_device("")), program_(build(file, variant)) {}
 
@@ -85,6 +88,7 @@ class KernelRunner {
     Program build(const std::string& file, const Variant& variant) const {
         KernelOptions options;
         options.lanes = variant.lanes;
+        options.format = variant.format;
         options.words_local = false;  // where the words lie is the ring's business, not that of the pieces
         std::vector<std::string> all = build_options(options, session_.device());
         if (!variant.optimised) all.emplace_back("-cl-opt-disable");

@@ -21,7 +21,7 @@ void closest_hits(__global const uint* restrict job,
                   __global float* restrict distances) // [ray]
 {
     const uint first = get_group_id(0) * RAYA_LANES;
-    const hit h = closest_hit(job, load_ray(rays, first));
+    const hit h = closest_hit(job, &((job_words)job)->objects, load_ray(rays, first));
     store_index(objects + first, 1, h.object);
     store_lanes(distances + first, 1, h.distance);
 }
@@ -34,9 +34,10 @@ void find_places(__global const uint* restrict job,
 {
     const uint first = get_group_id(0) * RAYA_LANES;
     const ray r = load_ray(rays, first);
-    const hit h = closest_hit(job, r);
+    const objects_words all = &((job_words)job)->objects;
+    const hit h = closest_hit(job, all, r);
     const mask struck = h.object != RAYA_NO_OBJECT;
-    const hit_place p = find_place(job, struck, h, r.origin, r.direction);
+    const hit_place p = find_place(job, all, struck, h, r.origin, r.direction);
     store_index(leaving + first, 1, choose_index(p.leaving, (index)(1), (index)(0)));
     __global float* to = places + first * 18;
     store_vec(to, 18, p.point);
@@ -65,7 +66,7 @@ void shade_once(__global const uint* restrict job,
     t.walking = mask_all(1);
     t.level = (index)(level);
     for (uint i = 0; i < RAYA_PENDING; ++i) t.pending[i] = t.ray;
-    shade(job, &t, closest_hit(job, r));
+    shade(job, &t, closest_hit(job, &((job_words)job)->objects, r));
 
     const uint words = 3 + RAYA_EVENTS;
     __global uint* to = state + first * words;

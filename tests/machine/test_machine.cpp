@@ -65,6 +65,21 @@ TEST_CASE("the arrays of others have their mapping, the SPA's numbers and no tim
     }
 }
 
+TEST_CASE("the torus is the paper's 64 transputers, and no ring", "[machine]") {
+    const Machine& torus = machine_named("torus");  // Yoshitani & Yamazaki
+    CHECK(torus.pes == 64u);
+    CHECK(torus.pe_memory_bytes == 4u << 20);
+    CHECK(torus.bounces == 8);
+    CHECK(torus.format.is_fp32());
+    CHECK(torus.cycle_ns == 40.0);
+    CHECK(torus.link_words_per_s == 425e3);
+    for (const Machine& machine : machines()) {
+        CAPTURE(machine.name);
+        CHECK(machine.divides_scene() == (machine.name == "torus"));
+        CHECK(machine.divides_scene() == (machine.topology == "torus3d"));
+    }
+}
+
 TEST_CASE("every machine is found by its own name, and no other", "[machine]") {
     std::set<std::string> names;
     for (const Machine& machine : machines()) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ring/kernel_options.hpp"
+#include "kernels/kernel_options.hpp"
 #include "ring/mapping.hpp"
 #include "ring/ring_renderer.hpp"
 #include "scene/nff_reader.hpp"

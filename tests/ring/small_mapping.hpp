@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "scene/random_below.hpp"
 #include "scene/split_mix.hpp"
 #include "shared/mapping.h"
 
 namespace raya {
-
-/// In [0, end).
-inline std::uint32_t random_below(SplitMix& random, std::uint64_t end) {
-    return static_cast<std::uint32_t>(random.next() % end);
-}
 
 /// A slot mapping. Sides are 1..`largest_side`, PEs 1..W H.
 inline raya_mapping small_mapping(SplitMix& random, std::uint32_t largest_side) {

@@ -10,7 +10,7 @@
 
 #include "cl/commands.hpp"
 #include "cl/kernel_source.hpp"
-#include "ring/kernel_options.hpp"
+#include "kernels/kernel_options.hpp"
 #include "ring/mapping.hpp"
 #include "ring/route.hpp"
 #include "ring/small_mapping.hpp"

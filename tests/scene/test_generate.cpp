@@ -85,6 +85,66 @@ TEST_CASE("balls: the same scene in the same order as SPD's files", "[generate]"
     }
 }
 
+TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]") {
+    for (const int size : {1, 2, 3, 7, 12}) {
+        CAPTURE(size);
+        const Scene s = generate_lattice(size);
+        const auto n = static_cast<std::size_t>(size);
+        CHECK(s.spheres.size() == (n + 1) * (n + 1) * (n + 1));
+        CHECK(s.cones.size() == 3 * n * (n + 1) * (n + 1));
+        CHECK(s.surfaces.size() == 4);
+        const double distance = 1.0 / size;
+        std::set<std::tuple<long, long, long>> middles;  // of the cylinders, in half distances
+        for (const Cone& c : s.cones) {
+            const Vec3 middle = (c.base + c.apex) / 2, along = c.apex - c.base;
+            const Vec3 halves = middle * 2 / distance;
+            middles.insert({std::lround(halves.x), std::lround(halves.y), std::lround(halves.z)});
+            const int axis = c.surface - 1;  // a colour for each
+            CHECK(along[axis] == Approx((1 - 0.99 / 4) * distance));
+            CHECK(along.length() == Approx(along[axis]));
+            CHECK(c.base_radius == c.apex_radius);
+            CHECK(std::lround(halves[axis]) % 2 == 1);
+        }
+        CHECK(middles.size() == s.cones.size());
+        for (const Sphere& sphere : s.spheres) {
+            CHECK(sphere.radius == Approx(distance / 4));
+            CHECK((sphere.centre - s.view.from).length() > sphere.radius);
+        }
+    }
+}
+
+TEST_CASE("lattice: the same scene in the same order as SPD's file", "[generate]") {
+    const auto path = spd_folder() / "lattice.nff";
+    if (!std::filesystem::exists(path)) {
+        WARN("not there, left out: " << path);
+        return;
+    }
+    const Scene theirs = read_nff(path), ours = generate_lattice(12);
+    REQUIRE(ours.spheres.size() == theirs.spheres.size());
+    REQUIRE(ours.cones.size() == theirs.cones.size());
+    double farthest = 0;
+    const auto compare = [&](const Vec3& a, const Vec3& b) { farthest = std::max(farthest, (a - b).length()); };
+    for (std::size_t i = 0; i < ours.spheres.size(); ++i) {
+        compare(ours.spheres[i].centre, theirs.spheres[i].centre);
+        compare(Vec3(ours.spheres[i].radius), Vec3(theirs.spheres[i].radius));
+    }
+    for (std::size_t i = 0; i < ours.cones.size(); ++i) {
+        compare(ours.cones[i].base, theirs.cones[i].base);
+        compare(ours.cones[i].apex, theirs.cones[i].apex);
+        compare({ours.cones[i].base_radius, ours.cones[i].apex_radius, 0},
+                {theirs.cones[i].base_radius, theirs.cones[i].apex_radius, 0});
+        REQUIRE(ours.cones[i].surface == theirs.cones[i].surface);
+    }
+    compare(ours.view.from, theirs.view.from);
+    compare(ours.view.at, theirs.view.at);
+    CHECK(farthest < 5e-6);  // they have six digits
+    CHECK(ours.view.up == theirs.view.up);
+    CHECK(ours.view.angle_degrees == theirs.view.angle_degrees);
+    CHECK(ours.background == theirs.background);
+    CHECK(ours.lights == theirs.lights);
+    CHECK(ours.surfaces == theirs.surfaces);
+}
+
 TEST_CASE("uniform: equal shares of voxels, whole spheres, no two alike or touching", "[generate]") {
     struct Row {
         int count;
@@ -148,14 +208,16 @@ TEST_CASE("centre: the committed file is what the generator makes", "[generate]"
 }
 
 TEST_CASE("generated scenes read back equal", "[generate]") {
-    for (const Scene& s :
-         {generate_balls(3), generate_uniform(100, {3, 3, 3}), generate_random(100, 1), generate_centre()})
+    for (const Scene& s : {generate_balls(3), generate_lattice(4), generate_uniform(100, {3, 3, 3}),
+                           generate_random(100, 1), generate_centre()})
         CHECK(parse_nff(write_nff(s), s.name) == s);
 }
 
 TEST_CASE("generators refuse what is out of range", "[generate]") {
     CHECK_THROWS_WITH(generate_balls(-1), "balls: level -1: must lie in 0..6");
     CHECK_THROWS_WITH(generate_balls(7), "balls: level 7: must lie in 0..6");
+    CHECK_THROWS_WITH(generate_lattice(0), "lattice: size 0: must lie in 1..64");
+    CHECK_THROWS_WITH(generate_lattice(65), "lattice: size 65: must lie in 1..64");
     CHECK_THROWS_WITH(generate_random(0, 1), "random: 0 spheres: must lie in 1..1000000");
     CHECK_THROWS_WITH(generate_uniform(1000001, {1, 1, 1}), "uniform: 1000001 spheres: must lie in 1..1000000");
     CHECK_THROWS_WITH(generate_uniform(1, {1, 0, 1}), "uniform: 0 voxels along an axis: must lie in 1..256");

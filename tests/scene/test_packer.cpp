@@ -51,19 +51,20 @@ class JobCheck {
         }
         const raya_job& job = packed_.job();
         REQUIRE(job.lights == scene_.lights.size());
-        REQUIRE(job.spheres == scene_.spheres.size());
-        REQUIRE(job.planes == scene_.planes.size());
-        REQUIRE(job.cones == scene_.cones.size());
+        REQUIRE(job.objects.spheres == scene_.spheres.size());
+        REQUIRE(job.objects.planes == scene_.planes.size());
+        REQUIRE(job.objects.cones == scene_.cones.size());
         for (std::size_t i = 0; i < job.lights; ++i)
             check_light(scene_.lights[i], job.lights_at + i * RAYA_LIGHT_WORDS);
-        for (std::size_t i = 0; i < job.spheres; ++i)
-            check_sphere(scene_.spheres[i], job.spheres_at + i * RAYA_SPHERE_WORDS);
-        for (std::size_t i = 0; i < job.planes; ++i)
-            check_plane(scene_.planes[i], job.planes_at + i * RAYA_PLANE_WORDS);
-        for (std::size_t i = 0; i < job.cones; ++i) check_cone(scene_.cones[i], job.cones_at + i * RAYA_CONE_WORDS);
+        for (std::size_t i = 0; i < job.objects.spheres; ++i)
+            check_sphere(scene_.spheres[i], job.objects.spheres_at + i * RAYA_SPHERE_WORDS);
+        for (std::size_t i = 0; i < job.objects.planes; ++i)
+            check_plane(scene_.planes[i], job.objects.planes_at + i * RAYA_PLANE_WORDS);
+        for (std::size_t i = 0; i < job.objects.cones; ++i)
+            check_cone(scene_.cones[i], job.objects.cones_at + i * RAYA_CONE_WORDS);
         std::size_t face = 0;
         for (const Polygon& polygon : scene_.polygons) check_faces(polygon, face);
-        CHECK(face == job.polygons);
+        CHECK(face == job.objects.polygons);
         CHECK(packed_.unread() == 0);
         CHECK(packed_.shared() == 0);
     }
@@ -106,7 +107,7 @@ class JobCheck {
         const Vec3 normal = newell_normal(polygon.vertices);
         for (const std::vector<int>& corners : faces_of(polygon)) {
             CAPTURE(face);
-            const std::size_t at = packed_.job().polygons_at + face++ * RAYA_POLYGON_WORDS;
+            const std::size_t at = packed_.job().objects.polygons_at + face++ * RAYA_POLYGON_WORDS;
             CHECK(packed_.vector(at + RAYA_PLANE_NORMAL) == fp32(normal.normalized()));
             CHECK(packed_.real(at + RAYA_PLANE_DISTANCE) == fp32(normal.normalized().dot(polygon.vertices[0])));
             CHECK(packed_.index(at + RAYA_POLYGON_AXIS) == static_cast<std::uint32_t>(dropped_axis(normal)));
@@ -216,7 +217,7 @@ TEST_CASE("patches become triangles, polygons stay whole", "[packer]") {
     const Scene scene = patch_scene();
     const PackedJob packed = pack_job(scene, settings_for(8, 8));
     JobCheck(scene, packed.words).run();
-    CHECK(PackedScene(packed.words).job().polygons == 2 + 1 + 1);
+    CHECK(PackedScene(packed.words).job().objects.polygons == 2 + 1 + 1);
     CHECK((packed.has_polygons && packed.has_patches && !packed.has_cones));
     const std::size_t words = sizeof(raya_job) / 4 + 2 * RAYA_SURFACE_WORDS + 4 * RAYA_POLYGON_WORDS +
                               (3 + 3 + 3 + 4) * RAYA_EDGE_WORDS + 3 * RAYA_PATCH_WORDS;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "error.hpp"
-#include "ring/kernel_options.hpp"
+#include "kernels/kernel_options.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -1,6 +1,7 @@
 // How the kernels are built for a device: the one place that makes their -D values.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,18 @@ struct KernelOptions {
     std::uint32_t bounces = 8;
     NumberFormat format{};
     bool words_local = true;  // PEs take the broadcast words into local memory
+    bool accel = false;       // the job has a grid: rays walk through it
     bool filter = false;      // spheres are filtered in fp32 before the exact test, see sphere_filter_holds
     bool polygons = true, patches = true, cones = true;
+};
+
+/// How the kernels are built for a device. 0: chosen from the device.
+struct KernelChoice {
+    std::uint32_t lanes = 0;                // V: 1, 4, 8 or 16
+    std::uint32_t group_size = 0;           // L: 1..64 work-items
+    bool filter = true;                     // the sphere filter, where it holds: the same hits, sooner
+    std::filesystem::path kernel_dir;       // kernels from disk in place of the program's own
+    std::vector<std::string> more_options;  // appended to the build options
 };
 
 /// V: as wide as the device's float vectors on a CPU, 1 elsewhere.

@@ -1,4 +1,4 @@
-#include "ring/kernel_options.hpp"
+#include "kernels/kernel_options.hpp"
 
 #include <fmt/format.h>
 
@@ -70,6 +70,7 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     all.push_back(fmt::format("-DRAYA_POLYGONS={:d}", options.polygons));
     all.push_back(fmt::format("-DRAYA_PATCHES={:d}", options.patches));
     all.push_back(fmt::format("-DRAYA_CONES={:d}", options.cones));
+    if (options.accel) all.emplace_back("-DRAYA_ACCEL=1");
     if (options.filter) all.emplace_back("-DRAYA_FILTER=1");
     return all;
 }

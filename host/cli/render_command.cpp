@@ -1,0 +1,61 @@
+#include "cli/render_command.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "error.hpp"
+#include "report/whole_file.hpp"
+
+namespace raya {
+namespace {
+
+// A file that is named twice would be written over by the other one.
+void check_distinct(const std::vector<std::string>& files) {
+    std::set<std::filesystem::path> seen;
+    for (const std::string& file : files)
+        if (!file.empty() && !file.starts_with("/dev/") && !seen.insert(std::filesystem::weakly_canonical(file)).second)
+            throw UserError(fmt::format(
+                "{}: named twice; scene, image, cost image, mask, report and packets must be different files", file));
+}
+
+void check_packets(const std::string& file) {
+    if (!file.ends_with(".gz") && !file.starts_with("/dev/"))
+        throw UserError(
+            fmt::format("--packets {}: what is written is compressed with gzip; let the name end in .csv.gz", file));
+    check_writable(file);
+}
+
+}  // namespace
+
+void check_targets(const RenderCommand& command) {
+    const std::string& packets = command.torus.packets;
+    check_distinct({command.render.scene, command.image, command.cost, command.mask, command.report, packets});
+    check_writable_target(command.image, kImageExtensions);
+    if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
+    if (!command.mask.empty()) check_writable_target(command.mask, kImageExtensions);
+    if (!command.mask.empty() && command.render.antialias != "supersample")
+        throw UserError("--mask shows which pixels were supersampled: give --antialias supersample as well");
+    if (!command.report.empty()) check_writable(command.report);
+    if (!packets.empty()) check_packets(packets);
+}
+
+ImageAttributes image_attributes(const RenderReport& report, const std::string& scene) {
+    ImageAttributes attributes = {{"scene", scene},
+                                  {"machine", report.machine.name},
+                                  {"mapping", report.machine.mapping},
+                                  {"format", report.machine.format},
+                                  {"u", fmt::format("{:.6f}", report.load.imbalance)}};
+    if (report.machine.offset) attributes.emplace_back("offset", std::to_string(*report.machine.offset));
+    return attributes;
+}
+
+void write_report(const RenderCommand& command, const RenderReport& report) {
+    if (!command.report.empty()) write_whole_file(command.report, to_json(report).dump(2) + "\n");
+    if (!command.quiet) fmt::print("{}", human_summary(report));
+    if (command.profile) fmt::print("\n{}", profile_table(report.measured.commands));
+}
+
+}  // namespace raya

@@ -1,0 +1,45 @@
+// What `raya render` was asked for, and what its machines have in common: files that are checked before, and written
+// after.
+#pragma once
+#include <string>
+
+#include "cli/render_options.hpp"
+#include "cli/torus_options.hpp"
+#include "image/image_io.hpp"
+#include "report/render_report.hpp"
+
+namespace raya {
+
+struct RenderCommand {
+    RenderOptions render;
+    TorusOptions torus;
+    std::string image, cost, mask, report;
+    bool profile = false, quiet = false;
+};
+
+/// Renders on a ring machine, on the torus machine, and writes what was asked for.
+void render_on_ring(const RenderCommand& command);
+void render_on_torus(const RenderCommand& command);
+
+/// Refuses files that could not be written, or that are named twice. UserError.
+void check_targets(const RenderCommand& command);
+
+/// What any machine's result tells: scene, image, device, times. The rest is the caller's.
+template <class Result>
+RenderReport begin_report(const RenderCommand& command, const DeviceInfo& device, const Result& result) {
+    RenderReport report;
+    report.scene = command.render.scene;
+    report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
+    report.device = {device.name,          device.platform, device.version,
+                     result.build_options, result.lanes,    result.group_size};
+    report.measured = {result.build_s, result.render_s, result.commands};
+    return report;
+}
+
+/// What every picture of a render says about itself.
+ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);
+
+/// The report's file, the summary and the profile, as far as they were asked for.
+void write_report(const RenderCommand& command, const RenderReport& report);
+
+}  // namespace raya

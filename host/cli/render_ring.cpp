@@ -1,0 +1,91 @@
+// raya render on a ring machine: pixels are divided among the PEs.
+#include "cli/render_command.hpp"
+#include "machine/budget.hpp"
+#include "report/progress.hpp"
+#include "ring/mapping.hpp"
+#include "scene/nff_reader.hpp"
+
+namespace raya {
+namespace {
+
+RingResult render_with_progress(RingRenderer& renderer, bool wanted) {
+    ProgressBar bar(wanted);
+    return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
+}
+
+std::optional<Antialiasing> antialiasing(const RingSettings& settings, const RingResult& result) {
+    const Antialias& a = settings.antialias;
+    if (a.method == AntialiasMethod::kNone) return {};
+    Antialiasing report;
+    report.method = antialias_name(a.method);
+    report.band_pixels = result.pe_memory.band_pixels;
+    if (a.method == AntialiasMethod::kFilter) return report;
+    report.points = points_name(a.points);
+    report.threshold = a.threshold;
+    report.recomputed = result.recomputed;
+    report.recomputed_share = static_cast<double>(result.recomputed) / (1.0 * result.image.width * result.image.height);
+    return report;
+}
+
+std::optional<ModelledTime> modelled(const RingSettings& settings, const RingResult& result) {
+    std::vector<Load> loads;
+    for (const Phase& phase : result.phases) loads.push_back(phase.load);
+    return modelled_time(settings.machine, loads, result.communication, 1,
+                         smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
+}
+
+RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device,
+                         const RingResult& result) {
+    RenderReport report = begin_report(command, device, result);
+    report.machine = {.name = settings.machine.name,
+                      .topology = settings.machine.topology,
+                      .mapping = mapping_text(settings.mapping),
+                      .fold = {},
+                      .format = format_name(settings.format),
+                      .pes = settings.mapping.pes,
+                      .offset = {},
+                      .bounces = settings.bounces,
+                      .pe_memory_bytes = settings.machine.pe_memory_bytes.value_or(0),
+                      .pe_memory_used_bytes = result.pe_memory.bytes()};
+    if (settings.dynamic) {
+        report.machine.mapping = dynamic_text(*settings.dynamic);
+    } else if (raya_has_slots(settings.mapping)) {
+        const bool column = command.render.mapping == "column";
+        report.machine.mapping = column ? "column" : "cyclic";
+        report.machine.fold = settings.mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic";
+        report.machine.offset = settings.mapping.parameter;
+    }
+    report.events = result.all.events;
+    report.load = result.all.load;
+    report.requests = result.requests;
+    for (const Phase& phase : result.phases) report.loads.emplace_back(phase.name, phase.load);
+    report.antialias = antialiasing(settings, result);
+    if (const auto& a = result.accel) report.accel = {a->divisions, a->copies, a->words, a->apart};
+    report.communication = result.communication;
+    report.modelled = modelled(settings, result);
+    return report;
+}
+
+// Floats hold whole numbers up to 2^24; beyond, the file has the nearest they hold.
+GreyImage grey(const CostImage& cost) {
+    return {static_cast<int>(cost.width), static_cast<int>(cost.height), {cost.cycles.begin(), cost.cycles.end()}};
+}
+
+}  // namespace
+
+void render_on_ring(const RenderCommand& command) {
+    const Scene scene = read_nff(command.render.scene);
+    const RingSettings settings = ring_settings(command.render, scene);
+    Session session(choose_device(command.render.device));
+    RingRenderer renderer(session, scene, settings);
+    const RingResult result = render_with_progress(renderer, !command.quiet);
+
+    const RenderReport report = make_report(command, settings, session.device(), result);
+    const ImageAttributes attributes = image_attributes(report, scene.name);
+    write_image(command.image, result.image, attributes);
+    if (!command.cost.empty()) write_image(command.cost, grey(result.all.cost), attributes);
+    if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
+    write_report(command, report);
+}
+
+}  // namespace raya

@@ -1,0 +1,141 @@
+#include "cli/torus_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/parse.hpp"
+#include "error.hpp"
+
+namespace raya {
+namespace {
+
+using Sides = std::array<std::uint32_t, 3>;
+
+constexpr Sides kNodes = {4, 4, 4};                            // Yoshitani & Yamazaki
+constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 24;  // as partition() has it
+
+}  // namespace
+
+void add_torus_options(CLI::App& command, RenderOptions& o, TorusOptions& t) {
+    const std::string group = "Torus machine";
+    CLI::Option* machine = command.get_option("--machine");
+    machine->description(machine->get_description() +
+                         "; torus: nodes of 4 MB that hold voxels of the scene, see below");
+    const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type) {
+        return command.add_option(name, value, text)->group(group)->type_name(type);
+    };
+    add("--nodes", t.nodes, "Nodes along x, y and z of the scene, at most 65,536 together", "IxJxK")
+        ->default_str("4x4x4");
+    add("--voxels", t.voxels,
+        "Equal voxels that the scene's box is cut into, at most 2^24 together; more than nodes are laid out "
+        "cyclically, fewer leave nodes empty; default: one for each node",
+        "AxBxC");
+    add("--links", t.links, "Links of a node: six, or four as a T805 has them: slabs of nodes beside one another",
+        "torus3d|torus2d")
+        ->default_str("torus3d");
+    add("--inject", t.inject,
+        "Who makes the primary rays: the root, which sends them to where they enter the box, or all nodes, each those "
+        "that enter at its voxels",
+        "root|all")
+        ->default_str("all");
+    add("--queue", t.queue,
+        "Packets that wait in a node at most; a queue that is too short is refused with the length that would do; "
+        "default: what the memory leaves, at most 4096",
+        "N");
+    add("--packets", t.packets,
+        "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; "
+        "see docs/packets.md",
+        "FILE.csv.gz");
+}
+
+namespace {
+
+struct Foreign {
+    const char *option, *reason;
+};
+
+constexpr const char* kNoPixels =
+    "its nodes hold voxels of the scene, not pixels; leave it out, --nodes and --voxels say what a node holds";
+constexpr const char* kNoNeighbours =
+    "no node holds pixels that it could compare with their neighbours; leave it out, or choose a ring: --machine "
+    "grande";
+constexpr std::array<Foreign, 10> kOfRings = {
+    {{"--mapping", kNoPixels},
+     {"--offset", kNoPixels},
+     {"--fold", kNoPixels},
+     {"--pes", "its PEs are nodes; say how many with --nodes IxJxK"},
+     {"--antialias", kNoNeighbours},
+     {"--threshold", kNoNeighbours},
+     {"--points", kNoNeighbours},
+     {"--mask", kNoNeighbours},
+     {"--cost",
+      "many nodes work for a pixel, and none of them knows its cost; leave it out, or choose a ring: --machine grande"},
+     {"--accel", "its voxels are the grid; cut the scene finer with --voxels AxBxC"}}};
+
+constexpr const char* kNoNodes =
+    "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
+constexpr std::array<Foreign, 6> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
+                                              {"--voxels", kNoNodes},
+                                              {"--links", kNoNodes},
+                                              {"--inject", kNoNodes},
+                                              {"--queue", kNoNodes},
+                                              {"--packets", kNoNodes}}};
+
+}  // namespace
+
+void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine) {
+    const auto refuse = [&](const Foreign& foreign) {
+        const CLI::Option* option = command.get_option_no_throw(foreign.option);
+        if (option == nullptr || option->empty() || option->results().front() == "none") return;
+        throw UserError(fmt::format("{} {} with --machine {}: {}", foreign.option, option->results().front(),
+                                    machine.name, foreign.reason));
+    };
+    if (machine.divides_scene())
+        for (const Foreign& foreign : kOfRings) refuse(foreign);
+    else
+        for (const Foreign& foreign : kOfTorus) refuse(foreign);
+}
+
+namespace {
+
+Injection parse_injection(const std::string& text) {
+    if (text.empty() || text == "all") return Injection::kAll;
+    if (text == "root") return Injection::kRoot;
+    throw UserError(fmt::format("--inject {}: must be root or all", text));
+}
+
+Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
+    if (t.voxels.empty()) return nodes;
+    const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 together");
+    // The sides are 10^6 at most: no product overflows.
+    if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMostVoxels)
+        throw UserError(fmt::format("--voxels {}: must be at most 2^24 together, 256 along each side", t.voxels));
+    return voxels;
+}
+
+}  // namespace
+
+TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, const Scene& scene) {
+    TorusSettings settings;
+    settings.machine = machine_named(o.machine);
+    const std::vector<std::uint32_t> size = image_size(o, scene);
+    settings.width = size[0];
+    settings.height = size[1];
+    const Sides nodes = t.nodes.empty() ? kNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 together");
+    const Links links = parse_links(t.links.empty() ? settings.machine.topology : t.links);
+    settings.torus = make_torus(nodes, links);
+    settings.machine.topology = links_name(links);
+    settings.voxels = voxels_of(t, nodes);
+    settings.inject = parse_injection(t.inject);
+    if (t.queue == 0u) throw UserError("--queue 0: must be 1 packet or more");
+    settings.queue = t.queue.value_or(0);
+    settings.memory_bytes = pe_memory_of(o, settings.machine);
+    settings.bounces = o.bounces.value_or(settings.machine.bounces);
+    settings.format = format_of(o, settings.machine);
+    settings.sampling = sampling_of(o);
+    settings.kernels = kernel_choice(o);
+    return settings;
+}
+
+}  // namespace raya

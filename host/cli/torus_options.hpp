@@ -1,0 +1,27 @@
+// The options of a render that belong to the torus machine alone.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cli/render_options.hpp"
+#include "torus/torus_renderer.hpp"
+
+namespace raya {
+
+/// As given on the command line; what is empty has its default.
+struct TorusOptions {
+    std::string nodes, voxels, links, inject, packets;
+    std::optional<std::uint32_t> queue;  // packets
+};
+
+/// Adds the options with their help texts, and --pe-memory; add_render_options() has been called.
+void add_torus_options(CLI::App& command, RenderOptions& options, TorusOptions& torus);
+
+/// Refuses the options that say nothing to this machine: UserError with the option, the reason and the remedy.
+void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine);
+
+/// What the torus renderer needs. UserError names the option that is out of range.
+TorusSettings torus_settings(const RenderOptions& options, const TorusOptions& torus, const Scene& scene);
+
+}  // namespace raya

@@ -1,0 +1,228 @@
+// Bounds of the kernels' rounding (kernels/geometry/), operation by operation, to first order in u; constants are
+// rounded up so far that they cover the rest for Y >= 10.
+//
+//   u  relative error of one operation        f  what is smaller is flushed to 0        s  | |D|^2 - 1 |
+//   n  largest distance from a ray's origin O to the object, O within reach             a' a as computed
+//
+// A region is where the exact point X = O + t'D of a computed hit t' can lie.
+//
+// Sphere (C, r), c = C - O. b' is off by 4un, l' = c' - b'D by 6un, and a discriminant >= 0 tells that
+// |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- root' D but for u (2n + r), and l'.D = b (1 - |D|^2) but for 6un, so
+// |X - C|^2 = r^2 but for 2r (s + 6u) n + r^2 (s + 5u) + 3f.
+//
+// Polygon N.x = d. The kernel finds the rounded (u, v) of X within the outline as it computes that, so X lies there but
+// for one rounding. Numerator and denominator of t' are off by 3u (|d| + |O|) and 3u, so X is off the plane by
+// 4u (|d| + |O|) + 4ut'. As a ray that does not move much in u and v moves along N, t' is bounded by how far the
+// outline and O are apart.
+//
+// Cone, p = O - base. The ray's point nearest to the base, p' + m'D, is off by 3un along the ray and by 2un across it:
+// X shifts. From there on all is of size S, |start| + |t|. The coefficients' errors are errors of the quadratic's value
+// Q(t) = |side + t dside|^2 - (r0 + k z)^2, together no more than e = 32u (S^2 + (r0 + |k| S)^2). What is flushed
+// changes the discriminant by d <= 2f, and Q by d / a at q / a, by d c / q^2 at c / q, where q = -(b +- root); as the
+// discriminant is > 0, |q| >= root >= sqrt(f), and that is at most 2 sqrt(f) S. So the distance from the axis is at
+// most sqrt((r0 + k z)^2 + e), with 0 <= z <= h but for 8uS. S follows from that, as start and D are perpendicular but
+// for (s + 6u) n; a steep cone in a coarse format has none.
+#include "grid/hit_regions.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace raya {
+namespace {
+
+Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+
+void widen(Box& box, double by) {
+    box.min -= Vec3(by);
+    box.max += Vec3(by);
+}
+
+// Square of the distance from a point to the nearest, to the farthest point of a box.
+double nearest_square(const Vec3& p, const Box& box) {
+    Vec3 apart;
+    for (int axis = 0; axis < 3; ++axis)
+        apart[axis] = std::max({box.min[axis] - p[axis], p[axis] - box.max[axis], 0.0});
+    return apart.length2();
+}
+double farthest_square(const Vec3& p, const Box& box) {
+    Vec3 apart;
+    for (int axis = 0; axis < 3; ++axis) apart[axis] = std::max(p[axis] - box.min[axis], box.max[axis] - p[axis]);
+    return apart.length2();
+}
+
+double segment_distance(const Vec3& p, const Vec3& from, const Vec3& along) {
+    const double square = along.length2();
+    const double share = square > 0 ? std::clamp((p - from).dot(along) / square, 0.0, 1.0) : 0;
+    return (p - from - share * along).length();
+}
+
+constexpr int kFewestBits = 10;  // Y from which on the constants cover what is beyond first order
+
+}  // namespace
+
+bool HitRegion::touches(const Box& part) const {
+    if (!box.intersects(part)) return false;
+    if (ball < kAll && (nearest_square(centre, part) > ball * ball || farthest_square(centre, part) < inner * inner))
+        return false;
+    const Vec3 middle_of_part = 0.5 * (part.min + part.max), arm = 0.5 * (part.max - part.min);
+    if (half < kAll && std::abs(normal.dot(middle_of_part) - middle) > half + absolute(normal).dot(arm)) return false;
+    return around == kAll || segment_distance(middle_of_part, centre, along) <= around + arm.length();
+}
+
+HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double reach,
+                       const std::vector<std::uint32_t>& apart)
+    : words_(&job.words) {
+    raya_job header;
+    std::memcpy(&header, job.words.data(), sizeof header);
+    objects_ = header.objects;
+    const std::uint32_t first_polygon = objects_.spheres + objects_.planes;
+    for (std::uint32_t number = 0; number < first_polygon + objects_.polygons + objects_.cones; ++number)
+        if ((number < objects_.spheres || number >= first_polygon) &&
+            !std::binary_search(apart.begin(), apart.end(), number))
+            numbers_.push_back(number);
+    const int quarter = 1 << (format.exponent_bits - 2);
+    unit_ = std::ldexp(format.truncates ? 1.0 : 0.5, -format.fraction_bits) + 0x1p-24;
+    smallest_ = std::ldexp(1.0, 2 - 2 * quarter);
+    stretch_ = std::ldexp(16.0, -format.fraction_bits) + 0x1p-21;  // RAYA_STRETCH, and its own rounding
+    far_ = std::ldexp(1.0, std::min(quarter - 1, 4 * 15));
+    square_room_ = std::ldexp(1.0, quarter - 1);
+    extent_ = header.extent;
+    reach_ = reach * extent_;
+    known_ = format.fraction_bits >= kFewestBits && reach_ <= square_room_ && cones_known();
+    if (!known_) reach_ = far_;
+}
+
+double HitRegions::slack(double reach) const {
+    return (24 * unit_ + 1.5 * stretch_) * std::sqrt(3.0) * (reach + 1) * extent_;
+}
+
+double HitRegions::real(std::size_t at) const { return std::bit_cast<float>((*words_)[at]); }
+Vec3 HitRegions::vector(std::size_t at) const { return {real(at), real(at + 1), real(at + 2)}; }
+
+double HitRegions::farthest(const Vec3& place) const { return std::sqrt(3.0) * reach_ + place.length(); }
+
+HitRegion HitRegions::region(std::size_t i) const {
+    const std::size_t number = numbers_[i], first_polygon = std::size_t{objects_.spheres} + objects_.planes;
+    const std::size_t first_cone = first_polygon + objects_.polygons;
+    if (number < first_polygon) return sphere(objects_.spheres_at + number * RAYA_SPHERE_WORDS);
+    if (number < first_cone) return polygon(objects_.polygons_at + (number - first_polygon) * RAYA_POLYGON_WORDS);
+    return cone(objects_.cones_at + (number - first_cone) * RAYA_CONE_WORDS);
+}
+
+HitRegion HitRegions::sphere(std::size_t at) const {
+    HitRegion region;
+    region.centre = vector(at + RAYA_SPHERE_CENTRE);
+    const double radius = std::sqrt(std::abs(real(at + RAYA_SPHERE_SQUARE)));
+    const double slack = (24 * unit_ + 1.5 * stretch_) * (farthest(region.centre) + radius) + 4 * std::sqrt(smallest_);
+    region.ball = radius + slack;
+    region.inner = std::max(0.0, radius - slack);
+    region.box = Box(region.centre, region.centre);
+    widen(region.box, region.ball);
+    return region;
+}
+
+// How far a hit in the polygon's plane can be off it; `outline` is the largest coordinate of its outline.
+double HitRegions::plane_error(std::size_t at, double outline) const {
+    const double to_plane = std::abs(real(at + RAYA_PLANE_DISTANCE)) + std::sqrt(3.0) * reach_;
+    const double distance = 2 * (to_plane + 2 * (outline + reach_));
+    return 5 * unit_ * (to_plane + distance) + 4 * smallest_ * (1 + distance);
+}
+
+HitRegion HitRegions::polygon(std::size_t at) const {
+    HitRegion region;
+    const auto axis = static_cast<int>((*words_)[at + RAYA_POLYGON_AXIS]);
+    const int across = (axis + 1) % 3, along = (axis + 2) % 3;
+    std::size_t edge = (*words_)[at + RAYA_POLYGON_EDGES_AT];
+    double inexact = 0;  // sum of what a border's rounding goes with
+    for (std::size_t edges = (*words_)[at + RAYA_POLYGON_EDGES]; edges > 0; --edges, edge += RAYA_EDGE_WORDS) {
+        const double u = real(edge + RAYA_EDGE_U), low = real(edge + RAYA_EDGE_LOW), high = real(edge + RAYA_EDGE_HIGH);
+        const double run = (high - low) * real(edge + RAYA_EDGE_SLOPE);
+        inexact = std::max({inexact, std::abs(u) + std::abs(run), std::abs(low), std::abs(high)});
+        for (const auto& [end_u, end_v] : {std::pair{u, low}, std::pair{u + run, high}}) {
+            Vec3 corner(0);
+            corner[across] = end_u;
+            corner[along] = end_v;
+            region.box.extendBy(corner);
+        }
+    }
+    widen(region.box, 4 * unit_ * inexact + 4 * smallest_);
+    region.normal = vector(at + RAYA_PLANE_NORMAL);
+    region.middle = real(at + RAYA_PLANE_DISTANCE);
+    region.half = plane_error(at, inexact);
+    // The third coordinate, from the plane over the outline's box. A polygon without area has no normal and no hits.
+    Vec3 slope = region.normal;
+    slope[axis] = 0;
+    const Vec3 middle = 0.5 * (region.box.min + region.box.max), arm = 0.5 * (region.box.max - region.box.min);
+    const double by_normal = region.normal[axis] != 0 ? 1 / region.normal[axis] : 0;
+    const double height = (region.middle - slope.dot(middle)) * by_normal;
+    const double deviation = (absolute(slope).dot(arm) + region.half) * std::abs(by_normal);
+    region.box.min[axis] = height - deviation;
+    region.box.max[axis] = height + deviation;
+    return region;
+}
+
+// e above, for a cone on which all is of the given size.
+double HitRegions::cone_error(std::size_t at, double size) const {
+    const double radius = real(at + RAYA_CONE_RADIUS), slope = std::abs(real(at + RAYA_CONE_SLOPE));
+    const double square = size * size, wide = radius + slope * size;
+    return 32 * unit_ * (square + wide * wide) + 4 * std::sqrt(smallest_) * size +
+           16 * smallest_ * (1 + square) * (1 + slope * slope);
+}
+
+// S above; infinite where errors of that size make it grow without end.
+double HitRegions::cone_size(std::size_t at) const {
+    const double r0 = real(at + RAYA_CONE_RADIUS), height = real(at + RAYA_CONE_HEIGHT);
+    const double slope = real(at + RAYA_CONE_SLOPE), r1 = std::abs(r0 + slope * height);
+    const double within = height * height + std::max(r0, r1) * std::max(r0, r1);
+    const double skew = 2 * (6 * unit_ + stretch_) * farthest(vector(at + RAYA_CONE_BASE));
+    double size = 0;
+    constexpr int kMostTurns = 60;
+    for (int turn = 0; turn < kMostTurns; ++turn) {
+        const double next = std::sqrt(2.1 * (within + cone_error(at, size))) + skew;
+        if (next <= size * 1.001) return next * 1.01;
+        size = next;
+    }
+    return HitRegion::kAll;
+}
+
+bool HitRegions::cones_known() const {
+    for (std::size_t i = 0; i < objects_.cones; ++i) {
+        const std::size_t at = objects_.cones_at + i * RAYA_CONE_WORDS;
+        const double steep = 1 + std::abs(real(at + RAYA_CONE_SLOPE));
+        // Nothing that the kernel squares may saturate.
+        const double most = (farthest(vector(at + RAYA_CONE_BASE)) * steep + real(at + RAYA_CONE_RADIUS)) * steep;
+        if (most > square_room_ || cone_size(at) == HitRegion::kAll) return false;
+    }
+    return true;
+}
+
+HitRegion HitRegions::cone(std::size_t at) const {
+    HitRegion region;
+    const double height = real(at + RAYA_CONE_HEIGHT), slope = real(at + RAYA_CONE_SLOPE);
+    const double r0 = real(at + RAYA_CONE_RADIUS), r1 = std::abs(r0 + slope * height);
+    const double size = cone_size(at), error = cone_error(at, size);
+    const double beyond = 8 * unit_ * size;  // of z below 0 or above h
+    const double shift = 6 * unit_ * farthest(vector(at + RAYA_CONE_BASE)) + 12 * unit_ * size + 8 * smallest_;
+    const Vec3 axis = vector(at + RAYA_CONE_AXIS).normalized();
+    region.centre = vector(at + RAYA_CONE_BASE);
+    region.along = height * axis;
+    double widest = 0;
+    for (const auto& [z, radius] : {std::pair{-beyond, r0}, std::pair{height + beyond, r1}}) {
+        const double outer = std::hypot(radius + std::abs(slope) * beyond, std::sqrt(error));
+        widest = std::max(widest, outer);
+        Vec3 arm;
+        for (int i = 0; i < 3; ++i) arm[i] = outer * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
+        region.box.extendBy(region.centre + z * axis - arm);
+        region.box.extendBy(region.centre + z * axis + arm);
+    }
+    widen(region.box, shift);
+    region.around = widest + beyond + shift;
+    region.normal = axis;
+    region.middle = axis.dot(region.centre) + 0.5 * height;
+    region.half = 0.5 * height + beyond + shift;
+    return region;
+}
+
+}  // namespace raya

@@ -1,0 +1,244 @@
+#include "grid/partition.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "error.hpp"
+#include "grid/hit_regions.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 24;
+constexpr double kUsualShare = 16;  // entries for each object or voxel that default divisions make, at most
+constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 30;  // of all lists: 4 GB of words
+
+double largest_coordinate(const Box& box) {
+    double largest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        largest = std::max({largest, std::abs(box.min[axis]), std::abs(box.max[axis])});
+    return largest;
+}
+
+// How far from its voxel a ray can be by the walk's rounding: the t of a plane is off by 3 2^-24, so the point there by
+// 3 2^-24 |plane - O|; the voxel that a ray enters the box by comes out of five operations on such numbers.
+double walk_error(const Box& box, double reach) { return 16 * 0x1p-24 * (reach + largest_coordinate(box)); }
+
+// The box to be cut: all regions, and room for a ray at their borders to be found in the box.
+Box box_around(const HitRegions& regions) {
+    Box box;
+    if (regions.size() == 0) return Box(Vec3(-0.5), Vec3(0.5));
+    if (!regions.known()) return Box(Vec3(-4 * regions.far()), Vec3(4 * regions.far()));
+    for (std::size_t i = 0; i < regions.size(); ++i) box.extendBy(regions.region(i).box);
+    const Vec3 margin(2 * walk_error(box, regions.reach()));
+    return Box(box.min - margin, box.max + margin);
+}
+
+// Voxels whose planes, as kernels compute them, enclose the box.
+raya_grid grid_over(const Box& box, const Divisions& divisions, double reach) {
+    constexpr float kUp = std::numeric_limits<float>::infinity();
+    raya_grid grid{};
+    grid.reach = static_cast<float>(reach);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        grid.divisions[axis] = divisions[axis];
+        grid.low[axis] = static_cast<float>(box.min[a]);
+        if (grid.low[axis] > box.min[a]) grid.low[axis] = std::nextafter(grid.low[axis], -kUp);
+        grid.cell[axis] = static_cast<float>((box.max[a] - grid.low[axis]) / divisions[axis]);
+        while (raya_voxel_plane(grid, axis, divisions[axis]) < box.max[a])
+            grid.cell[axis] = std::nextafter(grid.cell[axis], kUp);
+    }
+    return grid;
+}
+
+struct VoxelRange {
+    std::uint32_t first, last;
+};
+
+// The planes between the voxels, and what lies between which of them.
+class Voxels {
+  public:
+    Voxels(const raya_grid& grid, double slack) : grid_(grid), slack_(slack) {
+        for (std::uint32_t axis = 0; axis < 3; ++axis)
+            for (std::uint32_t k = 0; k <= grid.divisions[axis]; ++k)
+                planes_[axis].push_back(raya_voxel_plane(grid, axis, k));
+    }
+
+    /// Calls visit(voxel) for each voxel that comes within the slack of the region.
+    template <class Visit>
+    void visit(const HitRegion& region, const Visit& visit) const {
+        const VoxelRange x = range(region.box, 0), y = range(region.box, 1), z = range(region.box, 2);
+        for (std::uint32_t k = z.first; k <= z.last; ++k)
+            for (std::uint32_t j = y.first; j <= y.last; ++j)
+                for (std::uint32_t i = x.first; i <= x.last; ++i)
+                    if (region.touches(around(i, j, k))) visit(raya_voxel(grid_, i, j, k));
+    }
+
+  private:
+    VoxelRange range(const Box& box, int axis) const {
+        const std::vector<float>& planes = planes_[static_cast<std::size_t>(axis)];
+        const auto below = std::lower_bound(planes.begin() + 1, planes.end() - 1, box.min[axis] - slack_);
+        const auto above = std::upper_bound(below, planes.end() - 1, box.max[axis] + slack_);
+        return {static_cast<std::uint32_t>(below - planes.begin() - 1),
+                static_cast<std::uint32_t>(above - planes.begin() - 1)};
+    }
+    Box around(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+        return Box(Vec3(planes_[0][i] - slack_, planes_[1][j] - slack_, planes_[2][k] - slack_),
+                   Vec3(planes_[0][i + 1] + slack_, planes_[1][j + 1] + slack_, planes_[2][k + 1] + slack_));
+    }
+
+    raya_grid grid_;
+    double slack_;
+    std::array<std::vector<float>, 3> planes_;  // [divisions + 1] each
+};
+
+[[noreturn]] void refuse_entries(const Divisions& d) {
+    throw UserError(fmt::format("{}x{}x{} voxels register objects more than {} times; take fewer voxels", d[0], d[1],
+                                d[2], kMostEntries));
+}
+
+// Counts each voxel's objects, then puts them there.
+void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, const Divisions& divisions) {
+    std::uint64_t entries = 0;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        voxels.visit(regions.region(i), [&](std::uint32_t voxel) {
+            ++p.starts[voxel + 1];
+            ++entries;
+        });
+        if (entries > kMostEntries) refuse_entries(divisions);
+    }
+    for (std::size_t v = 1; v < p.starts.size(); ++v) p.starts[v] += p.starts[v - 1];
+    p.objects.resize(entries);
+    std::vector<std::uint32_t> ends(p.starts.begin(), p.starts.end() - 1);
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        const std::uint32_t number = regions.number(i);
+        voxels.visit(regions.region(i), [&](std::uint32_t voxel) { p.objects[ends[voxel]++] = number; });
+    }
+}
+
+// Every object in every voxel.
+void fill_alike(Partition& p, const HitRegions& regions, const Divisions& divisions) {
+    const std::size_t voxels = p.starts.size() - 1;
+    if (voxels * regions.size() > kMostEntries) refuse_entries(divisions);
+    for (std::size_t v = 0; v < voxels; ++v) {
+        for (std::size_t i = 0; i < regions.size(); ++i) p.objects.push_back(regions.number(i));
+        p.starts[v + 1] = static_cast<std::uint32_t>(p.objects.size());
+    }
+}
+
+void check_divisions(const Divisions& d) {
+    for (const std::uint64_t along : d)
+        if (along == 0 || along > kMostVoxels || std::uint64_t{d[0]} * d[1] > kMostVoxels ||
+            std::uint64_t{d[0]} * d[1] * d[2] > kMostVoxels)
+            throw UserError(fmt::format("{}x{}x{} voxels: each number must be at least 1, their product at most {}",
+                                        d[0], d[1], d[2], kMostVoxels));
+}
+
+// How far rays may come from, in units of the scene's extent: with infinite planes, on which rays start anywhere,
+// farther as long as objects grow by little beside a voxel. A ray from beyond has to be tested against all objects.
+double reach_for(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
+                 const std::vector<std::uint32_t>& apart) {
+    constexpr double kLeast = 2, kMost = 1024, kShareOfVoxel = 1.0 / 16;
+    const HitRegions regions(job, format, kLeast, apart);
+    raya_job header;
+    std::memcpy(&header, job.words.data(), sizeof header);
+    if (!regions.known() || header.objects.planes == 0) return kLeast;
+    const Box box = box_around(regions);
+    double side = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis)
+        side = std::min(side, (box.max[axis] - box.min[axis]) / divisions[static_cast<std::size_t>(axis)]);
+    double reach = kLeast;
+    while (reach < kMost && regions.slack(2 * reach) <= kShareOfVoxel * side &&
+           HitRegions(job, format, 2 * reach, apart).known())
+        reach *= 2;
+    return reach;
+}
+
+// Of the boxes of all regions: what tells how many voxels they meet, whatever the voxels' size.
+class RegionSizes {
+  public:
+    explicit RegionSizes(const HitRegions& regions) {
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            const Box box = regions.region(i).box;
+            for (std::size_t axes = 0; axes < sums_.size(); ++axes)
+                sums_[axes] += product(axes, [&](int a) { return box.max[a] - box.min[a]; });
+        }
+    }
+    double objects() const { return sums_[0]; }
+    /// A box of sides e meets about (e_x / c_x + 1) (e_y / c_y + 1) (e_z / c_z + 1) voxels of sides c.
+    double entries(const Box& box, const Divisions& d) const {
+        double sum = 0;
+        for (std::size_t axes = 0; axes < sums_.size(); ++axes)
+            sum += sums_[axes] *
+                   product(axes, [&](int a) { return d[static_cast<std::size_t>(a)] / (box.max[a] - box.min[a]); });
+        return sum;
+    }
+
+  private:
+    // Over the axes whose bits are set.
+    template <class Factor>
+    static double product(std::size_t axes, const Factor& factor) {
+        double all = 1;
+        for (int a = 0; a < 3; ++a)
+            if (axes >> a & 1) all *= factor(a);
+        return all;
+    }
+    std::array<double, 8> sums_{};  // over all boxes, of the product of the sides along each set of axes
+};
+
+// About `voxels` near-cubes in a box of the given sides. The shortest side first: where it is shorter than a cube's,
+// the others share what is left.
+Divisions cubes(const Vec3& sides, double voxels) {
+    std::array<int, 3> axes = {0, 1, 2};
+    std::sort(axes.begin(), axes.end(), [&](int a, int b) { return sides[a] < sides[b]; });
+    double volume = sides.x * sides.y * sides.z;
+    Divisions divisions{};
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const double cube = std::pow(volume / voxels, 1.0 / static_cast<double>(axes.size() - i));
+        const double along = std::max(1.0, i == 2 ? std::floor(voxels) : std::round(sides[axes[i]] / cube));
+        divisions[static_cast<std::size_t>(axes[i])] = static_cast<std::uint32_t>(along);
+        volume /= sides[axes[i]];
+        voxels /= along;
+    }
+    return divisions;
+}
+
+}  // namespace
+
+Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
+                    const std::vector<std::uint32_t>& apart) {
+    check_divisions(divisions);
+    const HitRegions regions(job, format, reach_for(job, format, divisions, apart), apart);
+    const Box box = box_around(regions);
+    Partition p;
+    p.grid = grid_over(box, divisions, regions.reach());
+    p.starts.assign(std::size_t{raya_voxels(p.grid)} + 1, 0);
+    p.apart = apart;
+    p.distinct = regions.size();
+    if (regions.known())
+        fill_lists(p, regions, Voxels(p.grid, walk_error(box, regions.reach())), divisions);
+    else
+        fill_alike(p, regions, divisions);
+    return p;
+}
+
+Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
+                        const std::vector<std::uint32_t>& apart) {
+    constexpr double kLeastReach = 2;
+    const HitRegions regions(job, format, kLeastReach, apart);
+    if (!regions.known()) return {1, 1, 1};
+    const Box box = box_around(regions);
+    const RegionSizes sizes(regions);
+    auto wanted = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMostVoxels));
+    for (;; wanted /= 2) {
+        const Divisions divisions = cubes(box.max - box.min, wanted);
+        if (wanted <= 1 || sizes.entries(box, divisions) <= kUsualShare * std::max(wanted, sizes.objects()))
+            return divisions;
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,46 @@
+// Cuts a scene's box into voxels and registers each object in every voxel in which a kernel could find a hit of it.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "machine/number_format.hpp"
+#include "scene/packer.hpp"
+#include "shared/grid.h"
+
+namespace raya {
+
+using Divisions = std::array<std::uint32_t, 3>;  // voxels along x, y, z
+
+/// Which objects touch which voxel. Objects are numbered as in the job (kernels/shared/job.h). Planes are infinite:
+/// they are in no list, and are tested for every ray.
+struct Partition {
+    raya_grid grid{};
+    std::vector<std::uint32_t> starts;   // [voxels + 1]: where the lists of the voxels start in `objects`
+    std::vector<std::uint32_t> objects;  // lists one after another, each ascending
+    std::vector<std::uint32_t> apart;    // finite objects in no list, ascending: tested for every ray, as planes are
+    std::uint64_t distinct = 0;          // objects in at least one list: all that are finite and not apart
+    std::uint64_t copies() const { return objects.size() - distinct; }
+};
+
+/// The box holds all finite objects; a scene without any gets a box about its origin. Objects are seen as the kernels
+/// see them, from the job's words.
+///
+/// Registration is conservative, so that hits do not depend on the way by which a ray came: wherever a kernel of that
+/// format, for a ray from an origin within `grid.reach` and of a direction of length 1 (not is_wide() in
+/// kernels/grid/walk.clh), computes a hit at distance t, the point O + t D lies in a voxel that has the object in its
+/// list, even where the walk is off by its own rounding. Where no bound is known (Y < 10; scenes whose squares leave
+/// the format; cones too steep for it) every object is in every list, the box holds all points within RAYA_FAR, and
+/// reach is RAYA_FAR.
+/// UserError for 0 divisions, more than 2^24 voxels or more than 2^30 entries of lists.
+/// Objects `apart` (numbers, ascending) are in no list, and the box need not hold them.
+Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
+                    const std::vector<std::uint32_t>& apart = {});
+
+/// Divisions for an accelerating grid: about `voxels` in all, 1 to 2^24, their sides as equal as the box allows. Fewer
+/// where lists would grow without use, as the format's rounding puts each object into many voxels; 1x1x1 where no bound
+/// is known.
+Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
+                        const std::vector<std::uint32_t>& apart = {});
+
+}  // namespace raya

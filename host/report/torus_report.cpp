@@ -1,0 +1,104 @@
+#include "report/torus_report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "machine/budget.hpp"
+#include "machine/t805.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Kind {
+    std::uint32_t number;
+    const char* name;
+};
+constexpr std::array<Kind, RAYA_KINDS - 1> kKinds = {{{RAYA_KIND_PRIMARY, "primary"},
+                                                      {RAYA_KIND_REFLECTED, "reflected"},
+                                                      {RAYA_KIND_REFRACTED, "refracted"},
+                                                      {RAYA_KIND_SHADOW, "shadow"},
+                                                      {RAYA_KIND_RETURN, "return"}}};
+
+std::string sides(const std::array<std::uint32_t, 3>& s) { return fmt::format("{}x{}x{}", s[0], s[1], s[2]); }
+
+std::string bytes_text(double bytes) {
+    if (bytes < 1e4) return fmt::format("{:.0f} bytes", bytes);
+    if (bytes < 1e6) return fmt::format("{:.1f} KB", bytes / 1024);
+    return fmt::format("{:.1f} MB", bytes / (1024 * 1024));
+}
+
+}  // namespace
+
+Json torus_json(const TorusReport& t) {
+    Json packets;
+    for (const Kind& kind : kKinds)
+        packets[kind.name] = {{"made", t.made[kind.number]}, {"ended", t.ended[kind.number]}};
+    return {{"nodes", t.nodes},
+            {"voxels", t.voxels},
+            {"links", t.links},
+            {"inject", t.inject},
+            {"supersteps", t.supersteps},
+            {"packets", packets},
+            {"live_max", t.live_max},
+            {"hops", t.hops},
+            {"bytes_per_link",
+             {{"links", t.link.count},
+              {"max", t.link.max_bytes},
+              {"mean", t.link.mean_bytes()},
+              {"total", t.link.total_bytes}}},
+            {"queue", t.queue},
+            {"queue_max", t.queue_max},
+            {"box", t.box},
+            {"copies", t.copies}};
+}
+
+Json torus_time_json(const TorusTime& time) {
+    return {{"compute", time.compute_ms}, {"messages", time.messages_ms},     {"processor", time.processor_ms},
+            {"links", time.links_ms},     {"overlapped", time.overlapped_ms}, {"stepwise", time.stepwise_ms}};
+}
+
+Json t805_budget_json(const EventCounts& events) {
+    const Operations shared = operations_of(events);
+    std::uint64_t additions = 0, multiplications = 0, words = 0;
+    for (std::size_t event = 0; event < events.size(); ++event) {
+        const T805Work& work = t805_work()[event];
+        additions += events[event] * work.additions;
+        multiplications += events[event] * work.multiplications;
+        words += events[event] * work.packet_words;
+    }
+    return {{"additions", additions},        {"multiplications", multiplications},
+            {"divisions", shared.divisions}, {"roots", shared.roots},
+            {"moves", shared.moves},         {"packet_words", words},
+            {"branches", shared.branches}};
+}
+
+std::string torus_machine_text(const TorusReport& t) {
+    return fmt::format("{} nodes, {}, {} voxels", sides(t.nodes), t.links, sides(t.voxels));
+}
+
+std::string torus_lines(const TorusReport& t) {
+    const auto made = std::accumulate(t.made.begin(), t.made.end(), std::uint64_t{0});
+    std::string kinds;
+    for (const Kind& kind : kKinds)
+        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : " + ", t.made[kind.number], kind.name);
+    std::string text = fmt::format("packets {} = {}; {} supersteps\n", made, kinds, t.supersteps);
+    text += fmt::format("links   {} packets over {} links, {} in all; {} over one on average, {} over the busiest\n",
+                        t.hops, t.link.count, bytes_text(static_cast<double>(t.link.total_bytes)),
+                        bytes_text(t.link.mean_bytes()), bytes_text(static_cast<double>(t.link.max_bytes)));
+    const TorusTime& m = t.modelled;
+    return text +
+           fmt::format(
+               "model   {:.1f} ms if nothing waits (processors {:.1f} ms: compute {:.1f} ms, messages {:.1f} ms; "
+               "links {:.1f} ms), {:.1f} ms step by step (modelled time of T805s)\n",
+               m.overlapped_ms, m.processor_ms, m.compute_ms, m.messages_ms, m.links_ms, m.stepwise_ms);
+}
+
+std::string torus_memory_text(const TorusReport& t) {
+    return fmt::format("; queues of {} packets, at most {} used; {} copies of objects", t.queue, t.queue_max, t.copies);
+}
+
+}  // namespace raya

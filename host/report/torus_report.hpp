@@ -1,0 +1,55 @@
+// What a torus machine reports beside what every machine does: nodes, packets, links and their modelled time.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "machine/machine.hpp"
+#include "machine/time_model.hpp"
+#include "shared/packet.h"
+
+namespace raya {
+
+struct TorusReport {
+    std::array<std::uint32_t, 3> nodes{}, voxels{};  // along x, y and z
+    std::string links;                               // "torus3d" or "torus2d"
+    std::string inject;                              // "root" or "all": who makes the primary rays
+    std::uint64_t supersteps = 0;
+    std::uint64_t live_max = 0;                             // most packets in all queues and boxes at a superstep's end
+    std::array<std::uint64_t, RAYA_KINDS> made{}, ended{};  // packets of each kind (kernels/shared/packet.h)
+    std::uint64_t hops = 0;                                 // packets over links
+
+    struct {
+        std::uint64_t count = 0;      // that lead to another node, of all nodes; each is one way
+        std::uint64_t max_bytes = 0;  // over the busiest of them
+        std::uint64_t total_bytes = 0;
+        double mean_bytes() const {
+            return count > 0 ? static_cast<double>(total_bytes) / static_cast<double>(count) : 0;
+        }
+    } link;
+
+    std::uint32_t queue = 0;      // packets that a node's queue holds
+    std::uint32_t box = 0;        // packets that each of its outboxes and inboxes holds
+    std::uint64_t queue_max = 0;  // most packets that waited in a queue
+    std::uint64_t copies = 0;     // of objects in several voxels
+    TorusTime modelled;
+};
+
+nlohmann::ordered_json torus_json(const TorusReport& report);
+
+nlohmann::ordered_json torus_time_json(const TorusTime& time);
+
+/// Operations of all that was counted, as a T805 does them (machine/t805.hpp).
+nlohmann::ordered_json t805_budget_json(const EventCounts& events);
+
+/// For the summary's first line: nodes, links and voxels.
+std::string torus_machine_text(const TorusReport& report);
+
+/// The summary's lines about packets, links and modelled time.
+std::string torus_lines(const TorusReport& report);
+
+/// For the summary's line about memory: queues and copies.
+std::string torus_memory_text(const TorusReport& report);
+
+}  // namespace raya

@@ -1,0 +1,70 @@
+#include "study/grid_run.hpp"
+
+#include <algorithm>
+
+#include "machine/budget.hpp"
+#include "machine/machine.hpp"
+#include "machine/t805.hpp"
+#include "ring/mapping.hpp"
+#include "ring/ring_renderer.hpp"
+#include "scene/packer.hpp"
+
+namespace raya {
+namespace {
+
+constexpr double kEnoughS = 1;  // of timing one grid
+
+RingSettings ring_settings(const Divisions& divisions, const GridSettings& settings) {
+    RingSettings ring;
+    ring.machine = machine_named("grande");
+    ring.mapping = make_mapping("cyclic", settings.side, settings.side, 1, 0, "cyclic");
+    ring.bounces = settings.bounces;
+    ring.sampling = settings.sampling;
+    ring.accel = {.grid = true, .divisions = divisions};
+    return ring;
+}
+
+std::uint64_t copies_of(const Scene& scene, const RingSettings& ring, const Divisions& divisions) {
+    const JobSettings job{ring.mapping, ring.sampling, ring.bounces, cycles_of_events(), ring.format};
+    return partition(pack_job(scene, job), ring.format, divisions).copies();
+}
+
+}  // namespace
+
+GridRun run_grid(Session& session, const LabelledScene& scene, const Divisions& divisions,
+                 const GridSettings& settings) {
+    const RingSettings ring = ring_settings(divisions, settings);
+    RingRenderer renderer(session, scene.scene, ring);
+    GridRun run{.label = scene.label,
+                .objects = scene.scene.object_count(),
+                .divisions = divisions,
+                .copies = copies_of(scene.scene, ring, divisions)};
+    run.measured_ms = measure(settings.runs, kEnoughS, [&] {
+                          const RingResult result = renderer.render();
+                          run.events = result.all.events;
+                          return trace_seconds(result);
+                      }).min_ms;
+    return run;
+}
+
+std::uint64_t voxels_of(const GridRun& run) {
+    return std::uint64_t{run.divisions[0]} * run.divisions[1] * run.divisions[2];
+}
+
+std::uint64_t rays_of(const EventCounts& events) {
+    return events[RAYA_PRIMARY] + events[RAYA_REFLECTED] + events[RAYA_REFRACTED] + events[RAYA_SHADOW];
+}
+
+std::uint64_t tests_of(const EventCounts& events) {
+    return events[RAYA_SPHERE_TESTS] + events[RAYA_PLANE_TESTS] + events[RAYA_POLYGON_TESTS] + events[RAYA_CONE_TESTS];
+}
+
+double t805_ms(const EventCounts& events) {
+    constexpr double kMsPerNs = 1e-6;
+    const auto cycles = t805_cycles();
+    std::uint64_t sum = 0;
+    for (std::size_t event = 0; event < cycles.size(); ++event) sum += cycles[event] * events[event];
+    return static_cast<double>(sum) * kT805CycleNs * kMsPerNs;
+}
+
+}  // namespace raya

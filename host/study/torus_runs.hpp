@@ -1,0 +1,74 @@
+// What the studies of the torus machine share: renders, and the figures that they take from them.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/laboratory.hpp"
+#include "study/scenes.hpp"
+#include "torus/topology.hpp"
+#include "torus/torus_renderer.hpp"
+#include "torus/torus_time.hpp"
+
+namespace raya {
+
+/// A torus machine and its share of an image. Format, bounces and rates are those of the machine `torus`: fp32 on
+/// T805s.
+struct TorusPlan {
+    std::array<std::uint32_t, 3> nodes{1, 1, 1};
+    Divisions voxels{1, 1, 1};
+    Links links = Links::kTorus3d;
+    Injection inject = Injection::kAll;
+    PixelSubset pixels;
+    std::uint32_t queue = 0;               // packets; 0: the renderer's default
+    std::optional<std::uint32_t> bounces;  // empty: the machine's
+};
+
+/// Figures of one render.
+struct TorusRun {
+    TorusPlan plan;
+    raya_torus torus{};
+    TorusResult result;  // without its image
+    TorusTime time;
+    /// Modelled, of the root: its processor, and the busiest of its links.
+    double root_processor_ms = 0, root_link_ms = 0;
+
+    std::uint32_t nodes() const { return raya_nodes(torus); }
+    std::uint64_t rays() const;     // of all kinds, shadow rays among them
+    std::uint64_t tests() const;    // of rays against objects of all kinds
+    std::uint64_t packets() const;  // made, of all kinds
+    double tests_per_ray() const { return per_ray(tests()); }
+    double steps_per_ray() const { return per_ray(result.events[RAYA_STEPS]); }
+    double hops_per_packet() const;
+    std::uint64_t busiest_link_bytes() const;  // one way
+    double root_ms() const;                    // modelled: the root alone, overlapped
+    std::uint64_t bytes_without_buffers() const;
+    double measured_ms() const { return 1e3 * result.render_s; }
+
+  private:
+    double per_ray(std::uint64_t count) const;
+};
+
+/// `size` x `size` pixels, without a limit of memory. Where the plan's queue is too short for the machine to come to an
+/// end, one of twice the length is tried, and so on up to the default; the run's plan says which it was. Throws
+/// UserError, DeviceError as TorusRenderer does. `sink` as in TorusRenderer::render(); of a machine that stood still it
+/// has been told too.
+TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_t size, const TorusPlan& plan,
+                      const PacketSink& sink = {});
+
+/// The same machine `groups` times over, group g with the pixels p of p mod `groups` = g; the plan's own pixels are not
+/// looked at. Pixels are numbered row by row.
+std::vector<TorusRun> run_groups(Session& session, const LabelledScene& scene, std::uint32_t size, TorusPlan plan,
+                                 std::uint32_t groups);
+
+/// The sides of 2^n nodes or voxels that are most alike, the longer ones first: 1x1x1, 2x1x1, 2x2x1, 2x2x2, ...
+/// std::invalid_argument for what is no power of two.
+std::array<std::uint32_t, 3> near_cube(std::uint32_t count);
+
+/// Scenes of the project's generators: `count` spheres spread evenly over 4 x 4 x 4 voxels, and SPD's balls.
+LabelledScene even_scene(int count);
+LabelledScene balls_scene(int level);
+
+}  // namespace raya

@@ -1,0 +1,78 @@
+#include "torus/composer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <stdexcept>
+
+#include "cl/kernel_source.hpp"
+
+namespace raya {
+namespace {
+
+bool comes_before(const ReturnPacket& a, const ReturnPacket& b) {
+    return raya_comes_before(a[RAYA_PACKET_PATH], a[RAYA_PACKET_STATE], b[RAYA_PACKET_PATH], b[RAYA_PACKET_STATE]);
+}
+
+void put(std::vector<float>& colours, const ReturnPacket& packet) {
+    for (int i = 0; i < 3; ++i) colours.push_back(std::bit_cast<float>(packet[RAYA_PACKET_COLOUR + i]));
+    colours.push_back(std::bit_cast<float>(packet[RAYA_PACKET_WEIGHT]));
+}
+
+constexpr std::size_t kGroups = 64;  // work-groups of one work-item, each with many pixels
+
+}  // namespace
+
+Contributions sort_contributions(const std::vector<ReturnPacket>& returns, std::uint32_t pixels) {
+    if (returns.size() > std::numeric_limits<std::uint32_t>::max())
+        throw std::logic_error("more contributions than 32 bits count");
+    Contributions sorted;
+    sorted.starts.assign(std::size_t{pixels} + 1, 0);
+    for (const ReturnPacket& packet : returns) {
+        if (packet[RAYA_PACKET_PIXEL] >= pixels)
+            throw std::logic_error(fmt::format("a contribution to pixel {} of {}", packet[RAYA_PACKET_PIXEL], pixels));
+        ++sorted.starts[packet[RAYA_PACKET_PIXEL] + 1];
+    }
+    for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) sorted.starts[pixel + 1] += sorted.starts[pixel];
+    std::vector<std::uint32_t> next(sorted.starts.begin(), sorted.starts.end() - 1), order(returns.size());
+    for (std::uint32_t i = 0; i < returns.size(); ++i) order[next[returns[i][RAYA_PACKET_PIXEL]]++] = i;
+
+    sorted.colours.reserve(4 * returns.size());
+    for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+        const auto first = order.begin() + sorted.starts[pixel], last = order.begin() + sorted.starts[pixel + 1];
+        std::sort(first, last, [&](std::uint32_t a, std::uint32_t b) { return comes_before(returns[a], returns[b]); });
+        for (auto i = first; i != last; ++i) {
+            if (i != first && !comes_before(returns[i[-1]], returns[*i]))
+                throw std::logic_error(fmt::format("pixel {}: two contributions with one place in its tree", pixel));
+            put(sorted.colours, returns[*i]);
+        }
+    }
+    return sorted;
+}
+
+Composer::Composer(Session& session, const std::vector<std::string>& build_options,
+                   const std::filesystem::path& kernel_dir)
+    : session_(session),
+      compose_(session.build("torus/compose.cl", kernel_source("torus/compose.cl", kernel_dir), build_options)
+                   .kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("compose")) {
+    compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles at the first launch
+}
+
+std::vector<float> Composer::compose(const Contributions& contributions) {
+    const auto pixels = static_cast<std::uint32_t>(contributions.starts.size() - 1);
+    Buffer<float> colours =
+        session_.buffer<float>("contributions", std::max<std::size_t>(4, contributions.colours.size()));
+    Buffer<std::uint32_t> starts =
+        session_.buffer<std::uint32_t>("starts of contributions", contributions.starts.size());
+    Buffer<float> image = session_.buffer<float>("image", 3ull * pixels);
+    session_.write("compose", colours, contributions.colours);
+    session_.write("compose", starts, contributions.starts);
+    session_.launch("compose", compose_, kGroups, 1, colours, starts, pixels, image);
+    std::vector<float> pixels_of_image(3ull * pixels);
+    session_.read("compose", image, pixels_of_image);
+    return pixels_of_image;
+}
+
+}  // namespace raya

@@ -1,0 +1,40 @@
+// Puts the contributions that come back to the root into the order of their pixels' ray trees and adds them up.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "shared/packet.h"
+
+namespace raya {
+
+/// A return packet (kernels/shared/packet.h).
+using ReturnPacket = std::array<std::uint32_t, RAYA_RETURN_WORDS>;
+
+/// Sorted as the pixels' sums need them: first to last pixel, in each the order of its ray tree. `starts`: [pixels +
+/// 1].
+struct Contributions {
+    std::vector<float> colours;         // [contribution][4]: red, green, blue, weight
+    std::vector<std::uint32_t> starts;  // where those of each pixel start
+};
+
+/// Takes the packets in any order. std::logic_error for a pixel beyond `pixels`, or two packets with the same place in
+/// a pixel's tree.
+Contributions sort_contributions(const std::vector<ReturnPacket>& returns, std::uint32_t pixels);
+
+class Composer {
+  public:
+    Composer(Session& session, const std::vector<std::string>& build_options, const std::filesystem::path& kernel_dir);
+
+    /// [pixels][3]: linear red, green, blue, in the format of the build.
+    std::vector<float> compose(const Contributions& contributions);
+
+  private:
+    Session& session_;
+    Kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&> compose_;
+};
+
+}  // namespace raya

@@ -1,0 +1,79 @@
+// The links of the torus: what nodes have put into their outboxes is copied into the inboxes of their neighbours.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "shared/traffic.h"
+
+namespace raya {
+
+/// "+x", "-x", "+y", ...
+std::string link_name(std::uint32_t link);
+
+/// What every node says of itself, as the host has read it: [node][RAYA_STATUS_WORDS].
+class NodeStatus {
+  public:
+    explicit NodeStatus(std::uint32_t nodes) : words(std::size_t{nodes} * RAYA_STATUS_WORDS) {}
+    std::uint32_t at(std::uint32_t node, std::uint32_t word) const {
+        return words[std::size_t{node} * RAYA_STATUS_WORDS + word];
+    }
+    std::vector<std::uint32_t> words;
+};
+
+class LinkExchange {
+  public:
+    /// What the boxes are for: packets of so many words; where a node's status has its boxes' counts; the labels' first
+    /// word.
+    struct Cargo {
+        std::string label;
+        std::uint32_t packet_words, outbox_status, inbox_status;
+    };
+
+    /// Boxes of `capacity` packets for every link of every node (kernels/shared/traffic.h).
+    LinkExchange(Session& session, const raya_torus& torus, std::uint32_t capacity, const Cargo& cargo);
+
+    /// All inboxes are empty, nothing has been sent.
+    void clear();
+
+    /// One exchange: over each link whose inbox at the other end is empty, all packets of the outbox, labelled "LABEL
+    /// +x" and so on. Where many nodes send, boxes are copied for a whole side of the torus at once, in one command for
+    /// those that do not wrap round and one for those that do, as long as the longest needs; where few do, or some must
+    /// wait, each by itself. Adds the words that each link carried to `words`, [node][link].
+    void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
+
+    Buffer<std::uint32_t>& outboxes() { return outboxes_; }
+    Buffer<std::uint32_t>& inboxes() { return inboxes_; }
+    const Buffer<std::uint32_t>& sent() const { return sent_; }  // [link][node]: 1 where an outbox was copied
+
+    /// [node][link], since clear(): packets sent.
+    const std::vector<std::uint64_t>& packets() const { return packets_; }
+
+    /// Calls `visit` with node and words of every packet that was put into an outbox since the last call.
+    void visit_new(const NodeStatus& status,
+                   const std::function<void(std::uint32_t node, const std::uint32_t* packet)>& visit);
+
+  private:
+    struct Sender {
+        std::uint32_t node, packets;
+    };
+    void copy_side(const std::string& label, std::uint32_t link, std::uint32_t packets);
+    void copy_each(const std::string& label, std::uint32_t link, const std::vector<Sender>& senders);
+
+    Session& session_;
+    raya_torus torus_;
+    std::uint32_t nodes_, capacity_;
+    Cargo cargo_;
+    Buffer<std::uint32_t> outboxes_, inboxes_, sent_;
+    std::vector<std::uint32_t> sent_flags_, flags_there_;  // what is to be, and what is, in sent_
+    std::vector<std::uint32_t> visited_;  // [link][node]: packets of the outbox that visit_new() has shown
+    std::vector<std::uint64_t> packets_;
+    std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * cargo_.packet_words; }
+    std::size_t box_at(std::uint32_t link, std::uint32_t node) const {
+        return raya_box_at(link, nodes_, node, capacity_, cargo_.packet_words);
+    }
+};
+
+}  // namespace raya

@@ -1,0 +1,176 @@
+#include "torus/node_array.hpp"
+
+#include <algorithm>
+
+#include "cl/kernel_source.hpp"
+
+namespace raya {
+namespace {
+
+// What kernels share in local memory beside a node's words; see their parameters.
+constexpr std::size_t kTreatWords =
+    5 + 2 * RAYA_EVENTS + 2 * RAYA_KINDS;  // RAYA_SHARED_WORDS of torus/flight.clh, and one to spare
+constexpr std::size_t kRouteWords = 2 * (RAYA_LINKS + 3) + 1;
+
+std::uint32_t largest_node(const NodeMemories& memories) {
+    std::uint32_t largest = 0;
+    for (std::size_t i = 0; i + 1 < memories.starts.size(); ++i)
+        largest = std::max(largest, memories.starts[i + 1] - memories.starts[i]);
+    return largest;
+}
+
+std::uint32_t lights_of(const NodeMemories& memories) {
+    return reinterpret_cast<const raya_job*>(memories.words.data())->lights;
+}
+
+PacketRecord record_of(const raya_torus& torus, std::uint32_t superstep, std::uint32_t node,
+                       const std::uint32_t* packet) {
+    PacketRecord record{.superstep = superstep, .source = node, .destination = RAYA_ROOT};
+    std::copy_n(packet, record.head.size(), record.head.begin());
+    if (raya_state_kind(packet[RAYA_PACKET_STATE]) == RAYA_KIND_RETURN) return record;
+    const raya_place v = raya_unpack_place(packet[RAYA_PACKET_VOXEL]);
+    record.destination =
+        raya_node_of(torus, v.at[0] % torus.nodes[0], v.at[1] % torus.nodes[1], v.at[2] % torus.nodes[2]);
+    return record;
+}
+
+}  // namespace
+
+NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
+                     const NodeBuffers& buffers, const KernelOptions& options)
+    : session_(session),
+      settings_(settings),
+      buffers_(buffers),
+      options_(options),
+      nodes_(raya_nodes(settings.torus)),
+      new_packets_(raya_most_new_packets(lights_of(memories))),
+      node_words_(largest_node(memories)),
+      memories_(session.buffer<std::uint32_t>("node memories", memories.words.size())),
+      starts_(session.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
+      queues_(session.buffer<std::uint32_t>("queues", std::size_t{nodes_} * buffers.queue * RAYA_PACKET_WORDS)),
+      status_(session.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
+      returns_(session.buffer<std::uint32_t>("returns", std::size_t{buffers.queue} * RAYA_RETURN_WORDS)),
+      events_(session.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
+      made_(session.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
+      ended_(session.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
+      rays_(session, settings.torus, buffers.box,
+            {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
+      homeward_(session, settings.torus, buffers.box,
+                {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX}) {
+    const std::size_t most_shared = std::max(kTreatWords, kRouteWords) + kRouteWords + options.group_size;
+    options_.words_local = 4 * (most_shared + node_words_) <= session.device().local_memory_bytes;
+    std::vector<std::string> all = raya::build_options(options_, session.device());
+    all.insert(all.end(), settings.kernels.more_options.begin(), settings.kernels.more_options.end());
+    inject_ = build<Inject>("inject", all);
+    trace_ = build<Trace>("trace_voxel", all);
+    route_ = build<Route>("route", all);
+    accept_ = build<Accept>("accept", all);
+    session_.write("scatter", memories_, memories.words);
+    session_.write("scatter", starts_, memories.starts);
+}
+
+template <class K>
+std::unique_ptr<K> NodeArray::build(const std::string& name, const std::vector<std::string>& all) {
+    const std::string file = "torus/" + name + ".cl";
+    const Program program = session_.build(file, kernel_source(file, settings_.kernels.kernel_dir), all);
+    build_options_ = program.options();
+    return [&]<class... Args>(std::type_identity<Kernel<Args...>>) {
+        return std::make_unique<K>(program.kernel<Args...>(name));
+    }(std::type_identity<K>{});
+}
+
+NodeArray::Local NodeArray::local_words(std::size_t shared) const {
+    return {shared + options_.group_size + 1 + (options_.words_local ? node_words_ : 0)};
+}
+
+void NodeArray::clear() {
+    session_.fill("clear", status_, 0);
+    session_.fill("clear", events_, 0);
+    session_.fill("clear", made_, 0);
+    session_.fill("clear", ended_, 0);
+    rays_.clear();
+    homeward_.clear();
+}
+
+void NodeArray::inject(const PixelSubset& pixels) {
+    session_.launch("inject", *inject_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, pixels.stride,
+                    pixels.first, static_cast<cl_uint>(settings_.inject == Injection::kRoot), local_words(kTreatWords),
+                    queues_, status_, events_, made_, ended_);
+}
+
+void NodeArray::trace_voxel(bool tight) {
+    session_.launch("trace_voxel", *trace_, nodes_, options_.group_size, memories_, starts_, buffers_.queue,
+                    static_cast<cl_uint>(tight), local_words(kTreatWords), queues_, status_, events_, made_, ended_);
+}
+
+void NodeArray::route() {
+    session_.launch("route", *route_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, buffers_.box,
+                    buffers_.queue, local_words(kRouteWords), queues_, rays_.outboxes(), homeward_.outboxes(), returns_,
+                    status_, ended_);
+}
+
+void NodeArray::accept(bool tight, std::uint32_t superstep) {
+    session_.launch("accept", *accept_, nodes_, options_.group_size, settings_.torus, buffers_.queue, buffers_.box,
+                    buffers_.queue, new_packets_, static_cast<cl_uint>(tight), superstep, rays_.sent(),
+                    homeward_.sent(), Local{options_.group_size}, queues_, rays_.inboxes(), homeward_.inboxes(),
+                    homeward_.outboxes(), returns_, status_, ended_);
+}
+
+std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
+    std::vector<std::uint64_t> words(std::size_t{nodes_} * RAYA_LINKS);
+    rays_.exchange(status, words);
+    homeward_.exchange(status, words);
+    return words;
+}
+
+std::vector<std::uint64_t> NodeArray::link_packets() const {
+    std::vector<std::uint64_t> packets = rays_.packets();
+    for (std::size_t i = 0; i < packets.size(); ++i) packets[i] += homeward_.packets()[i];
+    return packets;
+}
+
+NodeStatus NodeArray::look() {
+    NodeStatus status(nodes_);
+    session_.read("look", status_, status.words);
+    return status;
+}
+
+void NodeArray::gather(const NodeStatus& status, std::vector<std::array<std::uint32_t, RAYA_RETURN_WORDS>>& returns) {
+    const std::size_t waiting = status.at(RAYA_ROOT, RAYA_STATUS_HOST);
+    if (waiting == 0) return;
+    const std::size_t before = returns.size();
+    returns.resize(before + waiting);
+    session_.read("gather", returns_, {returns[before].data(), waiting * RAYA_RETURN_WORDS});
+}
+
+void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
+    std::vector<PacketRecord> records;
+    const auto take = [&](std::uint32_t node, const std::uint32_t* packet) {
+        if (packet[RAYA_PACKET_STATE] & RAYA_STATE_FRESH)
+            records.push_back(record_of(settings_.torus, superstep, node, packet));
+    };
+    rays_.visit_new(status, take);
+    homeward_.visit_new(status, take);
+    std::stable_sort(records.begin(), records.end(),
+                     [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
+    for (const PacketRecord& record : records) sink(record);
+}
+
+std::vector<std::uint64_t> NodeArray::read_events() {
+    std::vector<std::uint64_t> events(events_.size());
+    session_.read("read counters", events_, events);
+    return events;
+}
+
+PacketCounts NodeArray::read_packets(const Buffer<std::uint64_t>& counters) {
+    std::vector<std::uint64_t> all(counters.size());
+    session_.read("read counters", counters, all);
+    PacketCounts sum{};
+    for (std::size_t i = 0; i < all.size(); ++i) sum[i % RAYA_KINDS] += all[i];
+    return sum;
+}
+
+PacketCounts NodeArray::read_made() { return read_packets(made_); }
+PacketCounts NodeArray::read_ended() { return read_packets(ended_); }
+
+}  // namespace raya

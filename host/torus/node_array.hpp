@@ -1,0 +1,83 @@
+// All nodes of the torus on the device: their memories, queues and counters, and the kernels that they run.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "machine/machine.hpp"
+#include "torus/link_exchange.hpp"
+#include "torus/node_memory.hpp"
+#include "torus/torus_renderer.hpp"
+
+namespace raya {
+
+/// The kernels are launched with one work-group for each node; each step is labelled with its kernel's name.
+class NodeArray {
+  public:
+    /// Builds the kernels with `options` as the job needs them and takes the device memory.
+    NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
+              const KernelOptions& options);
+
+    /// Empty queues and boxes, counters 0, no ray made.
+    void clear();
+
+    // `tight`: packets get on with as little room as can be (kernels/shared/traffic.h).
+    void inject(const PixelSubset& pixels);
+    void trace_voxel(bool tight);
+    void route();
+    /// Rays, then returns; gives the words that each link carried, [node][RAYA_LINKS].
+    std::vector<std::uint64_t> exchange(const NodeStatus& status);
+    void accept(bool tight, std::uint32_t superstep);
+
+    /// What the nodes say; the host waits. accept() clears what they say of one superstep.
+    NodeStatus look();
+
+    /// Return packets that have reached the root since the last call are appended.
+    void gather(const NodeStatus& status, std::vector<std::array<std::uint32_t, RAYA_RETURN_WORDS>>& returns);
+
+    /// Packets in the outboxes that were made or changed by the node that sends them; for a trace of the traffic.
+    void record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
+
+    std::vector<std::uint64_t> read_events();  // [node][RAYA_EVENTS]
+    PacketCounts read_made();
+    PacketCounts read_ended();
+
+    std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear()
+    const std::string& build_options() const { return build_options_; }
+
+  private:
+    using Words = const Buffer<std::uint32_t>&;
+    using State = Buffer<std::uint32_t>&;
+    using Counters = Buffer<std::uint64_t>&;
+    using Local = LocalMemory<std::uint32_t>;
+    using Inject =
+        Kernel<Words, Words, cl_uint, cl_uint, cl_uint, cl_uint, Local, State, State, Counters, Counters, Counters>;
+    using Trace = Kernel<Words, Words, cl_uint, cl_uint, Local, State, State, Counters, Counters, Counters>;
+    using Route = Kernel<Words, Words, cl_uint, cl_uint, cl_uint, Local, State, State, State, State, State, Counters>;
+    using Accept = Kernel<raya_torus, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, Words, Words, Local, State,
+                          State, State, State, State, State, Counters>;
+
+    template <class K>
+    std::unique_ptr<K> build(const std::string& name, const std::vector<std::string>& all);
+    Local local_words(std::size_t shared) const;
+    PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
+
+    Session& session_;
+    const TorusSettings settings_;
+    NodeBuffers buffers_;
+    KernelOptions options_;
+    std::uint32_t nodes_, new_packets_, node_words_;
+    Buffer<std::uint32_t> memories_, starts_, queues_, status_, returns_;
+    Buffer<std::uint64_t> events_, made_, ended_;
+    LinkExchange rays_, homeward_;  // boxes of rays, of returns
+    std::string build_options_;
+    std::unique_ptr<Inject> inject_;
+    std::unique_ptr<Trace> trace_;
+    std::unique_ptr<Route> route_;
+    std::unique_ptr<Accept> accept_;
+};
+
+}  // namespace raya

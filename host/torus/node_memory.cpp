@@ -1,0 +1,248 @@
+// Cuts a job's words up into the memories of the torus machine's nodes.
+#include "torus/node_memory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "error.hpp"
+
+namespace raya {
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+using Numbers = std::span<const std::uint32_t>;  // of objects in the whole scene, ascending
+
+template <class T>
+constexpr std::size_t kWordsOf = sizeof(T) / sizeof(std::uint32_t);
+
+// Of all nodes together: 4 GB, as for a job.
+constexpr std::uint64_t kMostWords = std::uint64_t{1} << 30;
+
+// Where a job keeps its parts.
+class JobParts {
+  public:
+    explicit JobParts(const PackedJob& job) : words_(job.words) { std::memcpy(&header, words_.data(), sizeof header); }
+
+    raya_job header;
+
+    const std::uint32_t* at(std::uint32_t word) const { return words_.data() + word; }
+    std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
+    std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
+    std::size_t surfaces() const { return surface(header.lights_at); }
+    // The number of the surface whose words start there.
+    std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
+
+    const std::uint32_t* plane(std::uint32_t i) const { return at(header.objects.planes_at + i * RAYA_PLANE_WORDS); }
+    const std::uint32_t* object(std::uint32_t number) const {
+        const raya_objects& o = header.objects;
+        if (number < o.spheres) return at(o.spheres_at + number * RAYA_SPHERE_WORDS);
+        if (number < first_polygon()) return plane(number - o.spheres);
+        if (number < first_cone()) return at(o.polygons_at + (number - first_polygon()) * RAYA_POLYGON_WORDS);
+        return at(o.cones_at + (number - first_cone()) * RAYA_CONE_WORDS);
+    }
+
+  private:
+    const Words& words_;
+};
+
+std::size_t outline_words(const std::uint32_t* polygon) {
+    return polygon[RAYA_POLYGON_EDGES] * RAYA_EDGE_WORDS +
+           (polygon[RAYA_POLYGON_NORMALS_AT] != 0 ? RAYA_PATCH_WORDS : 0);
+}
+
+// The objects of a voxel by kind.
+struct VoxelLists {
+    Numbers all, spheres, polygons, cones;
+};
+
+VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32_t voxel) {
+    const auto first = partition.objects.begin() + partition.starts[voxel];
+    const auto last = partition.objects.begin() + partition.starts[voxel + 1];
+    const auto polygons = std::lower_bound(first, last, job.first_polygon());
+    const auto cones = std::lower_bound(polygons, last, job.first_cone());
+    return {{first, last}, {first, polygons}, {polygons, cones}, {cones, last}};
+}
+
+class NodePacker {
+  public:
+    NodePacker(const PackedJob& job, const Partition& partition, const raya_torus& torus)
+        : job_(job), partition_(partition), torus_(torus), seen_(job_.surfaces(), 0), surface_at_(job_.surfaces(), 0) {
+        if (partition.starts.size() != std::size_t{raya_voxels(partition.grid)} + 1)
+            throw std::logic_error("a partition needs one start more than voxels");
+    }
+
+    // Words that a node takes.
+    std::uint64_t words(std::uint32_t node) {
+        find_surfaces(node);
+        const raya_job& h = job_.header;
+        const std::uint32_t voxels = raya_node_voxels(torus_, partition_.grid, node);
+        std::uint64_t words = kWordsOf<raya_node> + surfaces_.size() * RAYA_SURFACE_WORDS +
+                              std::uint64_t{h.lights} * RAYA_LIGHT_WORDS + voxels * kWordsOf<raya_voxel_memory> +
+                              std::uint64_t{h.objects.planes} * RAYA_PLANE_WORDS;
+        for (std::uint32_t local = 0; local < voxels; ++local) {
+            const VoxelLists lists = lists_of_local(node, local);
+            words += lists.all.size() + lists.spheres.size() * RAYA_SPHERE_WORDS +
+                     lists.polygons.size() * RAYA_POLYGON_WORDS + lists.cones.size() * RAYA_CONE_WORDS;
+            for (const std::uint32_t number : lists.polygons) words += outline_words(job_.object(number));
+        }
+        return words;
+    }
+
+    // Appends the node's words; gives how many objects it holds.
+    std::uint64_t append(std::uint32_t node, Words& to) {
+        to_ = &to;
+        start_ = to.size();
+        raya_node header{};
+        header.job = job_.header;
+        header.job.objects = {};
+        header.job.objects.planes = job_.header.objects.planes;
+        header.job.grid_at = 0;  // the walk of a node goes by its own grid
+        header.torus = torus_;
+        header.grid = partition_.grid;
+        header.number = node;
+        header.voxels = raya_node_voxels(torus_, partition_.grid, node);
+        to.resize(start_ + kWordsOf<raya_node>);
+        append_surfaces(node);
+        header.job.lights_at = here();
+        append_words(job_.at(job_.header.lights_at), std::size_t{job_.header.lights} * RAYA_LIGHT_WORDS);
+        header.voxels_at = here();
+        to.resize(to.size() + header.voxels * kWordsOf<raya_voxel_memory>);
+        header.job.objects.planes_at = here();
+        for (std::uint32_t i = 0; i < header.job.objects.planes; ++i) append_object(job_.plane(i), RAYA_PLANE_WORDS);
+        const std::uint64_t objects = append_voxels(header);
+        std::memcpy(to.data() + start_, &header, sizeof header);
+        return objects;
+    }
+
+  private:
+    VoxelLists lists_of_local(std::uint32_t node, std::uint32_t local) const {
+        return lists_of(job_, partition_, raya_voxel_of_node(torus_, partition_.grid, node, local));
+    }
+
+    // From the node's first word.
+    std::uint32_t here() const { return static_cast<std::uint32_t>(to_->size() - start_); }
+
+    void append_words(const std::uint32_t* from, std::size_t words) { to_->insert(to_->end(), from, from + words); }
+
+    void append_object(const std::uint32_t* object, std::size_t words) {
+        append_words(object, words);
+        to_->end()[-static_cast<std::ptrdiff_t>(words) + RAYA_OBJECT_SURFACE_AT] =
+            surface_at_[job_.surface(object[RAYA_OBJECT_SURFACE_AT])];
+    }
+
+    void need_surface(const std::uint32_t* object) {
+        const std::size_t surface = job_.surface(object[RAYA_OBJECT_SURFACE_AT]);
+        if (std::exchange(seen_[surface], searches_) != searches_) surfaces_.push_back(surface);
+    }
+
+    // The surfaces of the node's objects, in the scene's order.
+    void find_surfaces(std::uint32_t node) {
+        ++searches_;
+        surfaces_.clear();
+        for (std::uint32_t i = 0; i < job_.header.objects.planes; ++i) need_surface(job_.plane(i));
+        const std::uint32_t voxels = raya_node_voxels(torus_, partition_.grid, node);
+        for (std::uint32_t local = 0; local < voxels; ++local)
+            for (const std::uint32_t number : lists_of_local(node, local).all) need_surface(job_.object(number));
+        std::sort(surfaces_.begin(), surfaces_.end());
+    }
+
+    void append_surfaces(std::uint32_t node) {
+        find_surfaces(node);
+        for (const std::size_t surface : surfaces_) {
+            surface_at_[surface] = here();
+            const std::size_t at = kWordsOf<raya_job> + surface * RAYA_SURFACE_WORDS;
+            append_words(job_.at(static_cast<std::uint32_t>(at)), RAYA_SURFACE_WORDS);
+        }
+    }
+
+    std::uint64_t append_voxels(const raya_node& header) {
+        std::uint64_t objects = header.job.objects.planes;
+        for (std::uint32_t local = 0; local < header.voxels; ++local) {
+            const VoxelLists lists = lists_of_local(header.number, local);
+            const raya_voxel_memory voxel = append_voxel(lists, header.job.objects);
+            std::memcpy(to_->data() + start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, &voxel,
+                        sizeof voxel);
+            objects += lists.all.size();
+        }
+        return objects;
+    }
+
+    raya_voxel_memory append_voxel(const VoxelLists& lists, const raya_objects& planes) {
+        raya_voxel_memory voxel{planes, 0, job_.header.objects.spheres};
+        voxel.objects.spheres = static_cast<std::uint32_t>(lists.spheres.size());
+        voxel.objects.spheres_at = here();
+        for (const std::uint32_t number : lists.spheres) append_object(job_.object(number), RAYA_SPHERE_WORDS);
+        voxel.objects.cones = static_cast<std::uint32_t>(lists.cones.size());
+        voxel.objects.cones_at = here();
+        for (const std::uint32_t number : lists.cones) append_object(job_.object(number), RAYA_CONE_WORDS);
+        voxel.objects.polygons = static_cast<std::uint32_t>(lists.polygons.size());
+        voxel.objects.polygons_at = here();
+        append_polygons(lists.polygons);
+        voxel.numbers_at = here();
+        append_words(lists.all.data(), lists.all.size());
+        return voxel;
+    }
+
+    void append_polygons(Numbers polygons) {
+        std::size_t record = to_->size();
+        for (const std::uint32_t number : polygons) append_object(job_.object(number), RAYA_POLYGON_WORDS);
+        for (const std::uint32_t number : polygons) {
+            const std::uint32_t* const polygon = job_.object(number);
+            (*to_)[record + RAYA_POLYGON_EDGES_AT] = here();
+            append_words(job_.at(polygon[RAYA_POLYGON_EDGES_AT]), polygon[RAYA_POLYGON_EDGES] * RAYA_EDGE_WORDS);
+            if (polygon[RAYA_POLYGON_NORMALS_AT] != 0) {
+                (*to_)[record + RAYA_POLYGON_NORMALS_AT] = here();
+                append_words(job_.at(polygon[RAYA_POLYGON_NORMALS_AT]), RAYA_PATCH_WORDS);
+            }
+            record += RAYA_POLYGON_WORDS;
+        }
+    }
+
+    JobParts job_;
+    const Partition& partition_;
+    const raya_torus torus_;
+    std::uint32_t searches_ = 0;             // of surfaces, so far
+    std::vector<std::uint32_t> seen_;        // [surface]: the last search that found it
+    std::vector<std::size_t> surfaces_;      // that the last search found
+    std::vector<std::uint32_t> surface_at_;  // [surface]: where it starts in the node that is being packed
+    Words* to_ = nullptr;                    // where that node goes, and
+    std::size_t start_ = 0;                  // where its first word lies there
+};
+
+}  // namespace
+
+NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
+    NodePacker packer(job, partition, torus);
+    const std::uint32_t nodes = raya_nodes(torus);
+    std::uint64_t total = 0;
+    for (std::uint32_t node = 0; node < nodes; ++node) total += packer.words(node);
+    if (total > kMostWords)
+        throw UserError(
+            fmt::format("{} nodes of {} voxels: their memories take {} words together, more than 32-bit "
+                        "word numbers reach; use fewer nodes or voxels",
+                        nodes, raya_voxels(partition.grid), total));
+    NodeMemories memories;
+    memories.words.reserve(total);
+    memories.starts.push_back(0);
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+        const std::uint64_t objects = packer.append(node, memories.words);
+        memories.most_objects = std::max(memories.most_objects, static_cast<std::uint32_t>(objects));
+        memories.starts.push_back(static_cast<std::uint32_t>(memories.words.size()));
+    }
+    memories.copies = partition.copies();
+    return memories;
+}
+
+std::uint64_t fullest_node_words(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
+    NodePacker packer(job, partition, torus);
+    std::uint64_t most = 0;
+    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) most = std::max(most, packer.words(node));
+    return most;
+}
+
+}  // namespace raya

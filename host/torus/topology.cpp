@@ -1,0 +1,58 @@
+// The torus machine's nodes and links: text, and the layout of three sides on a torus of two.
+#include "torus/topology.hpp"
+
+#include <fmt/format.h>
+
+#include "error.hpp"
+
+namespace raya {
+namespace {
+
+// C: the divisor of K that makes the sides I C and J K / C most alike, of equals the lower. Their product is the same
+// for every C, so their difference tells as much as their ratio.
+std::uint32_t slabs_beside(const std::array<std::uint32_t, 3>& nodes) {
+    const auto [i, j, k] = nodes;
+    const auto apart = [&](std::uint32_t c) {
+        const std::uint32_t first = i * c, second = j * (k / c);
+        return first > second ? first - second : second - first;
+    };
+    std::uint32_t best = 1;
+    for (std::uint32_t c = 2; c <= k; ++c)
+        if (k % c == 0 && apart(c) < apart(best)) best = c;
+    return best;
+}
+
+void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
+    std::uint64_t count = 1;
+    for (const std::uint32_t side : nodes) {
+        if (side == 0)
+            throw UserError(fmt::format("--nodes {}: a side of 0 nodes; use 1 or more each", sides_text(nodes)));
+        count *= side;  // below 2^16 before, so below 2^48 here
+        if (count > kMostNodes)
+            throw UserError(fmt::format("--nodes {}: more than {} nodes; use fewer", sides_text(nodes), kMostNodes));
+    }
+}
+
+}  // namespace
+
+Links parse_links(const std::string& text) {
+    for (const Links links : {Links::kTorus3d, Links::kTorus2d})
+        if (text == links_name(links)) return links;
+    throw UserError(fmt::format("--links {}: must be torus3d, six links a node, or torus2d, four", text));
+}
+
+std::string links_name(Links links) { return links == Links::kTorus3d ? "torus3d" : "torus2d"; }
+
+raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
+    check_nodes(nodes);
+    const auto [i, j, k] = nodes;
+    if (links == Links::kTorus3d) return {{i, j, k}, {i, j, k}, 1};
+    const std::uint32_t slabs = slabs_beside(nodes);
+    return {{i, j, k}, {i * slabs, j * (k / slabs), 1}, slabs};
+}
+
+std::string sides_text(const std::array<std::uint32_t, 3>& sides) {
+    return fmt::format("{}x{}x{}", sides[0], sides[1], sides[2]);
+}
+
+}  // namespace raya

@@ -1,0 +1,294 @@
+#include "torus/torus_renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+
+#include "error.hpp"
+#include "machine/t805.hpp"
+#include "torus/composer.hpp"
+#include "torus/node_array.hpp"
+#include "torus/windows.hpp"
+
+namespace raya {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// The machine has come to a stand before its image was done.
+struct Standstill {
+    std::uint64_t superstep, live, full;  // packets in the machine, nodes whose queue is full
+};
+
+JobSettings job_settings(const TorusSettings& s) {
+    raya_mapping pixels{};  // rows of the image in turn: the job's header says how large it is
+    pixels.width = s.width;
+    pixels.height = s.height;
+    pixels.pes = 1;
+    return {pixels, s.sampling, s.bounces, t805_cycles(), s.format};
+}
+
+TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        if (s.voxels[axis] > RAYA_MOST_PLACES)
+            throw UserError(
+                fmt::format("--voxels {}: at most {} along an axis", sides_text(s.voxels), RAYA_MOST_PLACES));
+    if (scene.lights.size() > RAYA_MOST_LIGHTS)
+        throw UserError(fmt::format("{}: {} lights; packets of the torus name at most {}", scene.name,
+                                    scene.lights.size(), RAYA_MOST_LIGHTS));
+    if (!s.kernels.lanes) s.kernels.lanes = default_lanes(device);
+    if (!s.kernels.group_size) s.kernels.group_size = default_group_size(device);
+    check_kernel_options({.lanes = s.kernels.lanes, .group_size = s.kernels.group_size, .bounces = s.bounces}, device);
+    return s;
+}
+
+std::uint64_t pixels_of(const TorusSettings& s) {
+    const std::uint64_t all = std::uint64_t{s.width} * s.height;
+    return s.pixels.first < all ? (all - s.pixels.first - 1) / s.pixels.stride + 1 : 0;
+}
+
+KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job, const Scene& scene) {
+    return {.lanes = s.kernels.lanes,
+            .group_size = s.kernels.group_size,
+            .bounces = s.bounces,
+            .format = s.format,
+            .words_local = true,
+            .filter = s.kernels.filter && !scene.spheres.empty() && sphere_filter_holds(s.format, scene_extent(scene)),
+            .polygons = job.has_polygons,
+            .patches = job.has_patches,
+            .cones = job.has_cones};
+}
+
+// Each node's header is told which pixels to look at.
+void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob& job, const Partition& partition) {
+    raya_job header;
+    std::memcpy(&header, job.words.data(), sizeof header);
+    const std::vector<PixelWindow> windows = pixel_windows(header, partition.grid, s.torus, s.format);
+    for (std::size_t node = 0; node < windows.size(); ++node)
+        std::memcpy(&memories.words[memories.starts[node] + offsetof(raya_node, window) / 4], &windows[node],
+                    sizeof windows[node]);
+}
+
+// Packets that live, or rays that have still to be made.
+struct Census {
+    std::uint64_t live = 0, full = 0, progress = 0, cycles = 0;
+    std::uint32_t fullest = 0;  // packets in the fullest queue
+    bool all_made = true;
+    double looked = 0;  // share of the rows that nodes have looked at
+};
+
+Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
+    Census c;
+    std::uint64_t rows = 0, done = 0;
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+        const auto at = [&](std::uint32_t word) { return status.at(node, word); };
+        c.live += at(RAYA_STATUS_QUEUE) + at(RAYA_STATUS_HOST);
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            c.live += at(RAYA_STATUS_OUTBOX + link) + at(RAYA_STATUS_INBOX + link) +
+                      at(RAYA_STATUS_RETURN_OUTBOX + link) + at(RAYA_STATUS_RETURN_INBOX + link);
+        c.fullest = std::max(c.fullest, at(RAYA_STATUS_QUEUE));
+        c.full += at(RAYA_STATUS_QUEUE) >= capacity;
+        c.progress += at(RAYA_STATUS_PROGRESS);
+        c.cycles = std::max(c.cycles, at(RAYA_STATUS_CYCLES) | std::uint64_t{at(RAYA_STATUS_CYCLES + 1)} << 32);
+        c.all_made &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
+        rows += at(RAYA_STATUS_ROWS);
+        done += at(RAYA_STATUS_NEXT_ROW);
+    }
+    c.looked = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
+    return c;
+}
+
+}  // namespace
+
+struct TorusRenderer::Parts {
+    Session& session;
+    TorusSettings settings;
+    std::string scene;
+    PackedJob job;
+    Partition partition{};
+    NodeMemories memories{};
+    NodeBuffers buffers{};
+    KernelOptions options{};
+    std::unique_ptr<NodeArray> nodes{};
+    std::unique_ptr<Composer> composer{};
+    double build_s = 0;
+
+    void build();
+    void run(TorusResult& result, std::vector<ReturnPacket>& returns, const ProgressCallback& progress,
+             const PacketSink& sink);
+    void compose(TorusResult& result, const std::vector<ReturnPacket>& returns);
+    void collect(TorusResult& result);
+    void check(const TorusResult& result) const;
+    void describe(TorusResult& result) const;
+    std::uint32_t long_enough_queue();
+};
+
+TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings)
+    : parts_(new Parts{.session = session,
+                       .settings = checked(settings, scene, session.device()),
+                       .scene = scene.name,
+                       .job = pack_job(scene, job_settings(settings))}) {
+    Parts& p = *parts_;
+    p.partition = partition(p.job, p.settings.format, p.settings.voxels);
+    p.memories = pack_nodes(p.job, p.partition, p.settings.torus);
+    const std::uint32_t fewest =
+        raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), p.settings.bounces);
+    p.buffers = plan_buffers(scene.name, p.memories, p.settings.torus, p.settings.memory_bytes, p.settings.queue,
+                             fewest, trial_of(p.job, p.settings.format, p.settings.voxels));
+    set_windows(p.memories, p.settings, p.job, p.partition);
+    p.options = kernel_options(p.settings, p.job, scene);
+    p.build();
+}
+
+TorusRenderer::~TorusRenderer() = default;
+
+void TorusRenderer::set_pixels(const PixelSubset& pixels) { parts_->settings.pixels = pixels; }
+
+void TorusRenderer::Parts::build() {
+    const Clock::time_point start = Clock::now();
+    nodes = std::make_unique<NodeArray>(session, settings, memories, buffers, options);
+    KernelOptions one_lane = options;
+    one_lane.lanes = one_lane.group_size = 1;
+    std::vector<std::string> all = build_options(one_lane, session.device());
+    all.insert(all.end(), settings.kernels.more_options.begin(), settings.kernels.more_options.end());
+    composer = std::make_unique<Composer>(session, all, settings.kernels.kernel_dir);
+    nodes->clear();
+    nodes->trace_voxel(false);  // of empty queues: PoCL compiles a kernel's body at its first launch
+    nodes->route();
+    nodes->accept(false, 0);
+    session.finish();
+    build_s = seconds_since(start);
+}
+
+TorusResult TorusRenderer::render(const ProgressCallback& progress, const PacketSink& sink) {
+    Parts& p = *parts_;
+    p.session.clear_profile();
+    const Clock::time_point start = Clock::now();
+    TorusResult result;
+    std::vector<ReturnPacket> returns;
+    try {
+        p.run(result, returns, progress, sink);
+    } catch (const Standstill& still) {
+        throw UserError(
+            fmt::format("{}: the machine stands still in superstep {}: {} packets wait for each other, {} of {} queues "
+                        "are full at {} "
+                        "packets; --queue {} is long enough (tried)",
+                        p.scene, still.superstep, still.live, still.full, raya_nodes(p.settings.torus), p.buffers.queue,
+                        p.long_enough_queue()));
+    }
+    p.compose(result, returns);
+    p.collect(result);
+    result.render_s = seconds_since(start);
+    p.describe(result);
+    p.check(result);
+    return result;
+}
+
+void TorusRenderer::Parts::run(TorusResult& result, std::vector<ReturnPacket>& returns,
+                               const ProgressCallback& progress, const PacketSink& sink) {
+    nodes->clear();
+    result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
+    bool tight = false;
+    bool crowded = false;
+    int stands = 0;  // supersteps without progress
+    for (std::uint32_t superstep = 0;; ++superstep) {
+        if (!crowded) nodes->inject(settings.pixels);
+        nodes->trace_voxel(tight);
+        nodes->route();
+        const NodeStatus status = nodes->look();
+        nodes->gather(status, returns);
+        if (sink) nodes->record(status, superstep, sink);
+        const std::vector<std::uint64_t> words = nodes->exchange(status);
+        nodes->accept(tight, superstep);
+
+        const Census census = census_of(status, raya_nodes(settings.torus), buffers.queue);
+        const std::uint64_t most_words = *std::max_element(words.begin(), words.end());
+        result.supersteps.push_back({census.cycles, most_words, census.live});
+        for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
+        if (progress) progress(census.looked);
+        if (census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made) return;
+        crowded = census.fullest > buffers.queue / 4;
+        // What a superstep with little room has accepted is seen in the next one.
+        stands = census.progress == 0 && most_words == 0 ? stands + 1 : 0;
+        if (stands == 3) throw Standstill{superstep, census.live, census.full};
+        tight = stands > 0;
+    }
+}
+
+void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<ReturnPacket>& returns) {
+    const std::uint32_t pixels = settings.width * settings.height;
+    result.image = {static_cast<int>(settings.width), static_cast<int>(settings.height),
+                    composer->compose(sort_contributions(returns, pixels))};
+}
+
+void TorusRenderer::Parts::collect(TorusResult& result) {
+    const std::vector<std::uint64_t> events = nodes->read_events();
+    const auto cycles = t805_cycles();
+    std::vector<std::uint64_t> loads(raya_nodes(settings.torus));
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        result.events[i % RAYA_EVENTS] += events[i];
+        loads[i / RAYA_EVENTS] += cycles[i % RAYA_EVENTS] * events[i];
+    }
+    result.load = load_of(std::move(loads));
+    result.made = nodes->read_made();
+    result.ended = nodes->read_ended();
+    const NodeStatus status = nodes->look();
+    for (std::uint32_t node = 0; node < raya_nodes(settings.torus); ++node)
+        result.queue_max = std::max<std::uint64_t>(result.queue_max, status.at(node, RAYA_STATUS_QUEUE_MAX));
+    result.link_packets = nodes->link_packets();
+    for (const std::uint64_t packets : result.link_packets) result.hops += packets;
+}
+
+// Nothing is lost: a machine that has lost or doubled a packet has no image to show.
+void TorusRenderer::Parts::check(const TorusResult& result) const {
+    for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
+        if (result.made[kind] != result.ended[kind])
+            throw std::logic_error(
+                fmt::format("{} packets of kind {} were made, {} ended", result.made[kind], kind, result.ended[kind]));
+    if (result.made[RAYA_KIND_PRIMARY] != pixels_of(settings))
+        throw std::logic_error(
+            fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], pixels_of(settings)));
+}
+
+void TorusRenderer::Parts::describe(TorusResult& result) const {
+    result.copies = memories.copies;
+    result.buffers = buffers;
+    std::uint64_t words = 0;
+    for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
+        words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
+    result.node_bytes = raya::node_bytes(words, buffers, links_of_node(settings.torus));
+    result.lanes = settings.kernels.lanes;
+    result.group_size = settings.kernels.group_size;
+    result.build_options = nodes->build_options();
+    result.build_s = build_s;
+    result.commands = session.profile().summary();
+}
+
+// The first of twice, four times, ... the queue with which the machine comes to an end. It is tried, since a machine's
+// traffic is not to be foreseen; memory is not looked at.
+std::uint32_t TorusRenderer::Parts::long_enough_queue() {
+    const NodeBuffers asked = buffers;
+    for (;;) {
+        buffers.queue *= 2;
+        buffers.box = std::max(1u, buffers.queue / 4);
+        build();
+        TorusResult result;
+        std::vector<ReturnPacket> returns;
+        try {
+            run(result, returns, {}, {});
+        } catch (const Standstill&) {
+            continue;
+        }
+        const std::uint32_t enough = buffers.queue;
+        buffers = asked;
+        build();
+        return enough;
+    }
+}
+
+}  // namespace raya

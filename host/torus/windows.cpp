@@ -1,0 +1,100 @@
+#include "torus/windows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "scene/scene.hpp"
+
+namespace raya {
+namespace {
+
+Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+// Where on the image points lie: P - eye = c (corner + x column_step + y row_step).
+class Projection {
+  public:
+    Projection(const raya_job& job, const NumberFormat& format)
+        : eye_(vec3(job.eye)), corner_(vec3(job.corner)), column_(vec3(job.column_step)), row_(vec3(job.row_step)) {
+        const double step = std::min(column_.length(), row_.length());
+        // A direction is off by some units in the last place of its length; so many pixels, and one for those at the
+        // edge.
+        const double unit = std::ldexp(1.0, -format.fraction_bits);
+        margin_ =
+            1 + 16 * unit *
+                    (corner_.length() + job.mapping.width * column_.length() + job.mapping.height * row_.length()) /
+                    step;
+    }
+
+    double margin() const { return margin_; }
+
+    // Column and row of P; false where it lies beside or behind the eye.
+    bool pixel(const Vec3& p, double& x, double& y) const {
+        const Vec3 v = p - eye_, normal = column_.cross(row_);
+        const double depth = v.dot(normal) / corner_.dot(normal);  // c
+        if (!(depth > 1e-6 * v.length())) return false;
+        const Vec3 flat = v / depth - corner_;
+        x = flat.dot(row_.cross(normal)) / column_.dot(row_.cross(normal));
+        y = flat.dot(column_.cross(normal)) / row_.dot(column_.cross(normal));
+        return true;
+    }
+
+  private:
+    Vec3 eye_, corner_, column_, row_;
+    double margin_;
+};
+
+struct Bounds {
+    double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    bool whole = false;  // no bounds are known
+};
+
+void add_voxel(Bounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
+    const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
+    for (std::uint32_t corner = 0; corner < 8 && !bounds.whole; ++corner) {
+        Vec3 p;
+        for (std::uint32_t axis = 0; axis < 3; ++axis)
+            p[axis] = raya_voxel_plane(grid, axis, at.at[axis] + (corner >> axis & 1));
+        double place[2];
+        bounds.whole = !projection.pixel(p, place[0], place[1]);
+        for (int i = 0; i < 2 && !bounds.whole; ++i) {
+            bounds.low[i] = std::min(bounds.low[i], place[i]);
+            bounds.high[i] = std::max(bounds.high[i], place[i]);
+        }
+    }
+}
+
+std::uint32_t clamped(double value, std::uint32_t most) {
+    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(most)));
+}
+
+}  // namespace
+
+std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
+                                       const NumberFormat& format) {
+    constexpr int kFewestBits = 10;
+    const Projection projection(job, format);
+    const std::uint32_t width = job.mapping.width, height = job.mapping.height;
+    std::vector<PixelWindow> windows;
+    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
+        Bounds bounds;
+        bounds.whole = format.fraction_bits < kFewestBits;
+        const std::uint32_t voxels = raya_node_voxels(torus, grid, node);
+        for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)
+            add_voxel(bounds, projection, grid, raya_voxel_of_node(torus, grid, node, i));
+        PixelWindow window{{0, height}, {0, width}};
+        if (voxels == 0) window = {{0, 0}, {0, 0}};
+        if (voxels > 0 && !bounds.whole) {
+            const double m = projection.margin();
+            window = {
+                {clamped(std::floor(bounds.low[1] - m), height), clamped(std::ceil(bounds.high[1] + m) + 1, height)},
+                {clamped(std::floor(bounds.low[0] - m), width), clamped(std::ceil(bounds.high[0] + m) + 1, width)}};
+        }
+        windows.push_back(window);
+    }
+    return windows;
+}
+
+}  // namespace raya

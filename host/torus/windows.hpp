@@ -1,0 +1,21 @@
+// Which pixels' rays may enter the box at which node's voxels.
+#pragma once
+#include <vector>
+
+#include "machine/number_format.hpp"
+#include "shared/node.h"
+
+namespace raya {
+
+/// Rows from, to, and columns from, to, the last not included.
+struct PixelWindow {
+    std::uint32_t rows[2], columns[2];
+};
+
+/// For each node a window that holds every pixel whose primary ray meets one of its voxels. Widened by what the format
+/// can turn a ray; the whole image where a voxel lies beside or behind the eye, or the format has so few bits that no
+/// bound is known. Empty for a node without voxels.
+std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
+                                       const NumberFormat& format);
+
+}  // namespace raya

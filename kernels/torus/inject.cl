@@ -1,0 +1,193 @@
+// inject: nodes make the packets of primary rays, as long as half of their queue is free.
+//
+// One work-group is one node. Where the root makes all rays, it takes all pixels in turn and the other nodes do nothing. Else every node makes the
+// rays that enter the box at one of its voxels: it looks at the window of pixels where they must lie, which the host has given it, and keeps those
+// that do. Rays that miss the box belong to the row's node: row mod nodes.
+//
+//     from the node's next pixel on, L x V pixels of a row at a time:
+//         make their rays and find their first voxels                                     (shading/camera.clh, grid/walk.clh)
+//         count the node's own; where they do not all fit, keep the first that do
+//         put them into the queue; the next pixel is the first that has to wait
+//
+// Half of the queue stays free, and at least what a ray's tree asks for: packets that arrive and packets that hits turn into find room.
+#include "shading/camera.clh"
+#include "torus/flight.clh"
+
+#define RAYA_STEP (RAYA_GROUP * RAYA_LANES)
+
+// A row of pixels that the node looks at: `count` of them, `stride` columns apart.
+typedef struct {
+    uint row, column, count;
+    int misses, hits;  // whether the node makes the rays that miss the box, those that meet it
+} pixel_row;
+
+static inline uint rows_of_window(node_words header) { return header->window[1] - header->window[0]; }
+
+// How many rows the node looks at: those of its window, then those whose misses are its own; the root all rows, if it makes all rays.
+static inline uint rows_of(const node* n, int root) {
+    const node_words header = (node_words)n->memory;
+    const uint height = header->job.mapping.height, nodes = raya_nodes(n->torus);
+    if (root) return n->number == RAYA_ROOT ? height : 0;
+    return rows_of_window(header) + (n->number < height ? (height - n->number - 1) / nodes + 1 : 0);
+}
+
+static inline pixel_row row_of(const node* n, uint i, uint stride, uint offset, int root) {
+    const node_words header = (node_words)n->memory;
+    const uint width = header->job.mapping.width, rows = rows_of_window(header);
+    const int in_window = !root && i < rows;
+    pixel_row p;
+    p.row = root ? i : in_window ? header->window[0] + i : n->number + (i - rows) * raya_nodes(n->torus);
+    p.hits = root || in_window;
+    p.misses = root || !in_window;
+    const uint first = in_window ? header->window[2] : 0, end = in_window ? header->window[3] : width;
+    // The first column from there on whose pixel number is offset mod stride.
+    const uint number = (uint)(((ulong)p.row * width + first) % stride);
+    p.column = first + (offset + stride - number) % stride;
+    p.count = p.column < end ? (end - p.column - 1) / stride + 1 : 0;
+    return p;
+}
+
+// The primary rays of pixels first .. first + V - 1 of the row, and which of them the node makes.
+typedef struct {
+    ray r;
+    index pixel, place;
+    mask own, meets;
+} primaries;
+
+static inline primaries make_primaries(const node* n, pixel_row row, uint first, uint stride) {
+    const job_words job = (job_words)n->memory;
+    primaries p;
+    lanes_index own, place, pixel;
+    lanes_real column;
+    for (uint lane = 0; lane < RAYA_LANES; ++lane) {
+        const uint at = row.column + (first + lane) * stride;
+        own.lane[lane] = first + lane < row.count ? RAYA_TRUE : 0;
+        pixel.lane[lane] = row.row * job->mapping.width + at;
+        column.lane[lane] = at;
+    }
+    p.pixel = pixel.all;
+    p.r.origin = vec_all(job->eye);
+    p.r.direction = primary_direction(job, num_all((float)row.row), column.all);
+    p.r.limit = num_const(RAYA_FAR);
+    const voxel_walk w = enter_grid(n->grid, p.r, own.truth);
+    p.meets = w.voxel != RAYA_NO_VOXEL;
+    place.all = p.place = pack_places(&w);
+    own.truth &= (p.meets & mask_all(row.hits)) | (mask_not(p.meets) & mask_all(row.misses));
+    if (!row.misses)
+        for (uint lane = 0; lane < RAYA_LANES; ++lane)
+            if (own.lane[lane] && !is_own(n, raya_unpack_place(place.lane[lane]))) own.lane[lane] = 0;
+    p.own = own.truth;
+    return p;
+}
+
+static inline void put_primary(__global uint* packet, const primaries* p, uint lane) {
+    lanes_index pixel, place;
+    const lanes_vec o = lanes_of_vec(p->r.origin), d = lanes_of_vec(p->r.direction);
+    lanes_real limit;
+    pixel.all = p->pixel;
+    place.all = p->place;
+    limit.all = p->r.limit;
+    packet[RAYA_PACKET_PIXEL] = pixel.lane[lane];
+    packet[RAYA_PACKET_STATE] = RAYA_KIND_PRIMARY | RAYA_STATE_FRESH;
+    packet[RAYA_PACKET_PATH] = 0;
+    packet[RAYA_PACKET_WEIGHT] = as_uint(1.0f);
+    packet[RAYA_PACKET_VOXEL] = place.lane[lane];
+    packet[RAYA_PACKET_ORIGIN] = as_uint(o.x.lane[lane]);
+    packet[RAYA_PACKET_ORIGIN + 1] = as_uint(o.y.lane[lane]);
+    packet[RAYA_PACKET_ORIGIN + 2] = as_uint(o.z.lane[lane]);
+    packet[RAYA_PACKET_DIRECTION] = as_uint(d.x.lane[lane]);
+    packet[RAYA_PACKET_DIRECTION + 1] = as_uint(d.y.lane[lane]);
+    packet[RAYA_PACKET_DIRECTION + 2] = as_uint(d.z.lane[lane]);
+    packet[RAYA_PACKET_LIMIT] = as_uint(limit.lane[lane]);
+    packet[RAYA_PACKET_FOUND] = RAYA_NO_VOXEL;
+}
+
+// Puts the lanes' own rays behind those of the work-items before this one, as many as there is room for. Gives the number in the row of the first
+// pixel that has to wait, `end` if none does.
+static inline uint put_primaries(const primaries* p, __global uint* queue, shared_words shared, uint behind, uint room, uint first, uint end) {
+    lanes_index own, meets;
+    own.truth = p->own;
+    meets.truth = p->meets;
+    uint met = 0, made = 0, waits = end;
+    const uint used = shared[RAYA_SHARED_USED];
+    for (uint lane = 0; lane < RAYA_LANES; ++lane) {
+        if (!own.lane[lane]) continue;
+        if (behind + made >= room) {
+            waits = first + lane;
+            break;
+        }
+        put_primary(queue + (size_t)(used + behind + made) * RAYA_PACKET_WORDS, p, lane);
+        ++made;
+        met += meets.lane[lane] & 1u;
+    }
+    count_shared(shared, RAYA_SHARED_MADE + RAYA_KIND_PRIMARY, made);
+    count_shared(shared, RAYA_SHARED_PROGRESS, made);
+    count_shared(shared, RAYA_SHARED_EVENTS + 2 * RAYA_PRIMARY, made);
+    count_shared(shared, RAYA_SHARED_EVENTS + 2 * RAYA_WALKS, met);
+    return waits;
+}
+
+// Makes rays of the row from its pixel `at` on until the queue has `most` packets; gives the next pixel to look at. Has barriers.
+static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, __global uint* queue, shared_words shared,
+                            shared_words own, uint most) {
+    const uint item = get_local_id(0);
+    shared_words next = own + RAYA_GROUP;
+    while (at < row.count && shared[RAYA_SHARED_USED] < most) {
+        const uint first = at + item * RAYA_LANES, end = min(row.count, at + RAYA_STEP), room = most - shared[RAYA_SHARED_USED];
+        const primaries p = make_primaries(n, row, first, stride);
+        own[item] = lanes_in(p.own);
+        if (item == 0) *next = end;
+        node_barrier(CLK_LOCAL_MEM_FENCE);
+        uint behind = 0, all = 0;
+        for (uint i = 0; i < RAYA_GROUP; ++i) {
+            if (i < item) behind += own[i];
+            all += own[i];
+        }
+        const uint waits = put_primaries(&p, queue, shared, behind, room, first, end);
+        if (waits < end) atomic_min(next, waits);
+        node_barrier(CLK_LOCAL_MEM_FENCE);
+        at = *next;
+        if (item == 0) shared[RAYA_SHARED_USED] += min(all, room);
+        node_barrier(CLK_LOCAL_MEM_FENCE);
+    }
+    return at;
+}
+
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void inject(__global const uint* restrict memories,  // as for trace_voxel, and all that is not explained here
+            __global const uint* restrict starts,
+            const uint capacity,
+            const uint stride,                       // pixels offset, offset + stride, ... are traced, counted row by row
+            const uint offset,
+            const uint root,                         // 1: the root makes all rays; 0: every node its own
+            __local uint* local_words,               // RAYA_SHARED_WORDS + L + 1, then, where RAYA_WORDS_LOCAL is 1, the words of a node
+            __global uint* restrict queues,
+            __global uint* restrict status,
+            __global ulong* restrict events,
+            __global ulong* restrict made,
+            __global ulong* restrict ended)
+{
+    const uint number = get_group_id(0), item = get_local_id(0);
+    shared_words shared = local_words, own = local_words + RAYA_SHARED_WORDS;
+    status += (size_t)number * RAYA_STATUS_WORDS;
+    open_shared(shared, status[RAYA_STATUS_QUEUE]);
+    const node n = open_node(memories + starts[number], starts[number + 1] - starts[number], local_words + RAYA_SHARED_WORDS + RAYA_GROUP + 1);
+    __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
+    const uint room = raya_room_of_ray(raya_most_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
+    const uint most = min(max(capacity / 8, 1u), capacity - room), rows = rows_of(&n, root);
+    uint i = status[RAYA_STATUS_NEXT_ROW], at = status[RAYA_STATUS_NEXT_COLUMN];
+    while (i < rows) {
+        const pixel_row row = row_of(&n, i, stride, offset, root);
+        at = make_row(&n, row, at, stride, queue, shared, own, most);
+        if (at < row.count) break;
+        at = 0;
+        ++i;
+    }
+    node_barrier(CLK_LOCAL_MEM_FENCE);
+    if (item == 0) {
+        status[RAYA_STATUS_NEXT_ROW] = i;
+        status[RAYA_STATUS_NEXT_COLUMN] = at;
+        status[RAYA_STATUS_ROWS] = rows;
+        report_counts(n.memory, shared, status, events + (size_t)number * RAYA_EVENTS, made + (size_t)number * RAYA_KINDS, ended + (size_t)number * RAYA_KINDS);
+    }
+}

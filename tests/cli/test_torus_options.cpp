@@ -1,0 +1,102 @@
+// The torus's options: what the program refuses before it renders, and what its help says.
+#include "cli/refusals.hpp"
+
+namespace raya {
+namespace {
+
+struct Row {
+    Words options;
+    Words message;
+};
+
+/// A render of a small picture on `machine`, which must be refused with every message.
+void check_refused_on(const std::string& machine, const std::vector<Row>& rows) {
+    const ScratchFolder outputs;
+    for (const Row& row : rows) {
+        Words arguments = {"render", scene_file("planes"), "-o", outputs / "x.png", "--machine", machine};
+        arguments.insert(arguments.end(), row.options.begin(), row.options.end());
+        check_refused(outputs, arguments, 2, row.message);
+    }
+}
+
+TEST_CASE("the torus refuses the options of rings, with reason and remedy", "[cli]") {
+    const std::string with = " with --machine torus";
+    check_refused_on("torus",
+                     {{{"--mapping", "rows"}, {"--mapping rows" + with, "voxels of the scene, not pixels", "--voxels"}},
+                      {{"--offset", "16"}, {"--offset 16" + with, "not pixels", "leave it out"}},
+                      {{"--fold", "block"}, {"--fold block" + with, "not pixels", "leave it out"}},
+                      {{"--pes", "64"}, {"--pes 64" + with, "nodes", "--nodes IxJxK"}},
+                      {{"--antialias", "filter"}, {"--antialias filter" + with, "neighbours", "choose a ring"}},
+                      {{"--threshold", "0.5"}, {"--threshold 0.5" + with, "neighbours", "choose a ring"}},
+                      {{"--points", "axes"}, {"--points axes" + with, "neighbours", "choose a ring"}},
+                      {{"--mask", "m.png"}, {"--mask m.png" + with, "neighbours", "choose a ring"}},
+                      {{"--cost", "c.exr"}, {"--cost c.exr" + with, "many nodes work for a pixel", "choose a ring"}}});
+}
+
+TEST_CASE("rings refuse the options of the torus, with reason and remedy", "[cli]") {
+    const std::string with = " with --machine spa", remedy = "choose --machine torus";
+    check_refused_on("spa", {{{"--nodes", "4x4x4"}, {"--nodes 4x4x4" + with, "ring", "--pes"}},
+                             {{"--voxels", "4x4x4"}, {"--voxels 4x4x4" + with, remedy}},
+                             {{"--links", "torus2d"}, {"--links torus2d" + with, remedy}},
+                             {{"--inject", "root"}, {"--inject root" + with, remedy}},
+                             {{"--queue", "64"}, {"--queue 64" + with, remedy}},
+                             {{"--packets", "p.csv.gz"}, {"--packets p.csv.gz" + with, remedy}}});
+    check_refused_on("grande", {{{"--inject", "all"}, {"--inject all with --machine grande", remedy}}});
+}
+
+TEST_CASE("the torus's own options are checked before anything is rendered", "[cli]") {
+    check_refused_on("torus", {{{"--nodes", "4x4"}, {"--nodes 4x4: must be XxYxZ", "65,536"}},
+                               {{"--nodes", "0x4x4"}, {"--nodes 0x4x4"}},
+                               {{"--nodes", "64x64x17"}, {"--nodes 64x64x17", "65536"}},
+                               {{"--nodes", "1000000x1000000x1000000"}, {"--nodes 1000000x1000000x1000000"}},
+                               {{"--voxels", "8"}, {"--voxels 8: must be XxYxZ", "2^24"}},
+                               {{"--voxels", "257x256x256"}, {"--voxels 257x256x256", "2^24"}},
+                               {{"--voxels", "1000000x1000000x1000000"}, {"--voxels 1000000x", "2^24"}},
+                               {{"--links", "mesh"}, {"--links mesh", "torus3d", "torus2d"}},
+                               {{"--inject", "some"}, {"--inject some", "root or all"}},
+                               {{"--queue", "0"}, {"--queue 0", "1 packet"}},
+                               {{"--queue", "-1"}, {"--queue", "'-1' is not a whole number"}},
+                               {{"--queue", "x"}, {"--queue", "'x' is not a whole number"}},
+                               {{"--pe-memory", "0"}, {"--pe-memory 0", "1 byte"}},
+                               {{"--pe-memory", "4MB"}, {"--pe-memory", "'4MB' is not a whole number"}},
+                               {{"--size", "16385x1"}, {"--size 16385x1", "1..16384 pixels"}},
+                               {{"--sampling", "random"}, {"--sampling random", "centres or corners"}},
+                               {{"--format", "e4m15"}, {"--format e4m15", "fp32"}},
+                               {{"--lanes", "0"}, {"--lanes", "1 or more"}}});
+    for (const char* option : {"--nodes", "--voxels", "--links", "--inject", "--queue", "--pe-memory", "--packets"})
+        check_refused_on("torus", {{{option, ""}, {option, "must not be empty"}}});
+}
+
+TEST_CASE("a trace of packets that could not be written is refused before anything is rendered", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string missing = outputs / "missing/p.csv.gz", image = outputs / "x.png";
+    check_refused_on("torus", {{{"--packets", outputs / "p.csv"}, {"p.csv", "gzip", ".csv.gz"}},
+                               {{"--packets", missing}, {"/missing' does not exist", "mkdir -p"}},
+                               {{"--packets", outputs / "p.csv.gz", "--report", outputs / "p.csv.gz"},
+                                {"p.csv.gz", "named twice"}}});
+    check_refused(
+        outputs,
+        {"render", scene_file("planes"), "-o", outputs / "x.png", "--machine", "torus", "--packets", outputs.path()}, 2,
+        {outputs.path(), "gzip"});
+}
+
+TEST_CASE("bench takes no torus", "[cli]") {
+    const ScratchFolder outputs;
+    check_refused(outputs, {"bench", "--samples", "1", "--machine", "torus"}, 2,
+                  {"--machine torus", "voxels of the scene, not pixels", "only raya render", "spa"});
+    check_refused(outputs, {"bench", "--nodes", "4x4x4"}, 2, {"--nodes", "--help"});
+}
+
+TEST_CASE("the help of render gives the torus's options with units and defaults", "[cli]") {
+    const Outcome run = run_raya({"render", "--help"});
+    REQUIRE(run.code == 0);
+    for (const char* text :
+         {"Torus machine", "torus: nodes of 4 MB", "--nodes IxJxK=4x4x4", "--voxels AxBxC", "fewer leave nodes empty",
+          "one for each node", "torus3d|torus2d=torus3d", "root|all=all", "--queue N", "Packets that wait",
+          "--pe-memory BYTES", "4194304", "--packets FILE.csv.gz", "docs/packets.md"})
+        CHECK_THAT(run.out, Catch::Contains(text));
+    CHECK_THAT(run_raya({"bench", "--help"}).out, !Catch::Contains("--nodes"));
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,143 @@
+// Rays at objects, most of them at silhouettes, edges, rims and points, where a kernel's rounding decides whether there
+// is a hit.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "grid/random_walks.hpp"
+#include "kernels/random_scene.hpp"
+#include "machine/number_format.hpp"
+#include "reference/reference.hpp"
+#include "scene/polygon_plane.hpp"
+#include "scene/scene.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+
+/// How rays may be in a format: coordinates of origins up to `reach`, | |D|^2 - 1 | up to RAYA_STRETCH.
+struct RayBounds {
+    NumberFormat format;
+    double reach = 0;
+
+    double unit() const { return std::ldexp(1.0, -format.fraction_bits); }
+    Vec3 rounded(const Vec3& v) const {
+        Vec3 to;
+        for (int axis = 0; axis < 3; ++axis) to[axis] = round_to_format(v[axis], format);
+        return to;
+    }
+};
+
+/// Puts everything of the scene at `scale` times its place, each object at a size of its own, 2^-9 to twice what that
+/// makes it, and some cones along axes.
+inline Scene of_all_sizes(Scene scene, SplitMix& random, double scale) {
+    const auto size = [&] { return std::exp2(random.uniform(-9, 1)); };
+    scene.view.from *= scale;
+    for (Sphere& s : scene.spheres) s = {scale * s.centre, scale * size() * s.radius, s.surface};
+    for (Plane& p : scene.planes) p.distance *= scale;
+    for (Polygon& p : scene.polygons) {
+        const double by = size();
+        const Vec3 first = p.vertices[0];
+        for (Vec3& v : p.vertices) v = scale * (first + by * (v - first));
+    }
+    for (Cone& c : scene.cones) {
+        const double by = size();
+        if (below(random, 3) == 0) c.apex = c.base + (c.apex - c.base).length() * axis_direction(random);
+        c = {scale * c.base, scale * by * c.base_radius, scale * (c.base + by * (c.apex - c.base)),
+             scale * by * c.apex_radius, c.surface};
+    }
+    return scene;
+}
+
+/// Where a ray is to touch an object: a point of it, and a direction in which rays there graze it; 0: any.
+struct Aim {
+    Vec3 point{0}, tangent{0};
+};
+
+inline Vec3 perpendicular(SplitMix& random, const Vec3& to) {
+    for (;;) {
+        const Vec3 v = to.cross(random_direction(random));
+        if (v.length() > 0.1 * to.length()) return v.normalized();
+    }
+}
+
+inline Aim aim_at(SplitMix& random, const Sphere& s) {
+    const Vec3 normal = random_direction(random);
+    return {s.centre + std::abs(s.radius) * normal, perpendicular(random, normal)};
+}
+
+/// On an edge or at its start; along the plane.
+inline Aim aim_at(SplitMix& random, const Polygon& p) {
+    const std::size_t i = below(random, static_cast<std::uint32_t>(p.vertices.size()));
+    const Vec3 start = p.vertices[i], side = p.vertices[(i + 1) % p.vertices.size()] - start;
+    return {start + (below(random, 3) == 0 ? 0 : random.uniform(0, 1)) * side,
+            perpendicular(random, newell_normal(p.vertices).normalized())};
+}
+
+/// On the side, the rim or the axis; rays graze the side.
+inline Aim aim_at(SplitMix& random, const Cone& c) {
+    static constexpr std::array<double, 4> kEnds = {0, 1, 1e-3, 1 - 1e-3};
+    const Vec3 axis = (c.apex - c.base).normalized(), out = perpendicular(random, axis);
+    const double share = below(random, 2) == 0 ? kEnds[below(random, kEnds.size())] : random.uniform(0, 1);
+    const double radius = std::abs(c.base_radius) + share * (std::abs(c.apex_radius) - std::abs(c.base_radius));
+    const Vec3 point = c.base + share * (c.apex - c.base) + (below(random, 8) == 0 ? 0 : radius) * out;
+    const Vec3 down = c.apex - c.base + (std::abs(c.apex_radius) - std::abs(c.base_radius)) * out;
+    const Vec3 round = axis.cross(out),
+               mixed = random.uniform(-1, 1) * down.normalized() + random.uniform(-1, 1) * round;
+    return {point, below(random, 3) == 0 ? down.normalized() : below(random, 2) == 0 ? round : mixed.normalized()};
+}
+
+inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
+    if (number < scene.spheres.size()) return aim_at(random, scene.spheres[number]);
+    number -= scene.spheres.size() + scene.planes.size();
+    if (number < scene.polygons.size()) return aim_at(random, scene.polygons[number]);
+    return aim_at(random, scene.cones[number - scene.polygons.size()]);
+}
+
+/// As far as origins go in a direction.
+inline double way_out(const RayBounds& bounds, const Vec3& from, const Vec3& direction) {
+    double way = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis)
+        if (direction[axis] != 0)
+            way = std::min(way, (std::copysign(bounds.reach, direction[axis]) - from[axis]) / direction[axis]);
+    return std::max(way, 0.0);
+}
+
+inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& aim) {
+    const bool grazes = below(random, 2) == 0;
+    const Vec3 away = grazes ? (below(random, 2) == 0 ? 1.0 : -1.0) * aim.tangent : random_direction(random);
+    const double way = way_out(bounds, aim.point, away);
+    switch (below(random, 4)) {
+        case 0:
+            return aim.point + way * away;
+        case 1:
+            return aim.point + random.uniform(0, way) * away;
+        case 2:
+            return aim.point + way * std::exp2(random.uniform(-12, 0)) * away;
+        default: {  // a corner of the cube that origins lie in
+            Vec3 corner;
+            for (int axis = 0; axis < 3; ++axis) corner[axis] = (below(random, 2) == 0 ? 1 : -1) * bounds.reach;
+            return grazes ? aim.point + way * away : corner;
+        }
+    }
+}
+
+/// Towards the aim but for a few units in the last place, as long or short as RAYA_STRETCH lets it be, or of length 1.
+inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds, Aim aim) {
+    if (below(random, 2) == 0) aim.point = bounds.rounded(aim.point);
+    const double stretch = bounds.format.is_fp32() ? 0x1p-19 : 16 * bounds.unit();  // 2 RAYA_MARGIN
+    for (;;) {
+        const Vec3 start = bounds.rounded(random_start(random, bounds, aim));
+        const Vec3 arm = aim.point - start;
+        const double apart = arm.length(), blur = below(random, 4) * bounds.unit() * random.uniform(0, 7) * apart;
+        if (apart == 0) continue;
+        const double length = below(random, 2) == 0 ? 1 : 1 + random.uniform(-0.5, 0.5) * stretch;
+        const Vec3 d = bounds.rounded(length * (arm + blur * random_direction(random)).normalized());
+        double farthest = 0;
+        for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(start[axis]));
+        if (farthest <= bounds.reach && std::abs(d.length2() - 1) <= stretch) return {start, d};
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,70 @@
+// Hits of a scene's objects, each alone, by rays aimed at them.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "grid/aimed_rays.hpp"
+#include "kernels/kernel_runner.hpp"
+#include "kernels/probe.hpp"
+#include "scene/packer.hpp"
+
+namespace raya {
+
+inline PackedJob job_in(const Scene& scene, const NumberFormat& format) {
+    JobSettings settings;
+    settings.mapping = {16, 16, 1, 0, RAYA_FOLD_CYCLIC};
+    settings.format = format;
+    return pack_job(scene, settings);
+}
+
+inline raya_job header_of(const PackedJob& job) {
+    raya_job header;
+    std::memcpy(&header, job.words.data(), sizeof header);
+    return header;
+}
+
+/// A hit as the kernel computed it, and where it is exactly.
+struct FoundHit {
+    std::uint32_t object;  // number in the job
+    reference::Ray ray;
+    double t;
+    Vec3 point() const { return ray.origin + t * ray.direction; }
+};
+
+/// Rays for objects, sixteen for each entry.
+struct AimedRays {
+    std::vector<std::uint32_t> objects;  // numbers in the job
+    std::vector<reference::Ray> rays;
+};
+
+/// `turns` times sixteen rays for each finite object.
+inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
+    AimedRays aimed;
+    const std::vector<int> numbers = object_numbers(scene);
+    for (int turn = 0; turn < turns; ++turn)
+        for (std::uint32_t object = 0; object < numbers.size(); ++object) {
+            const auto number = static_cast<std::size_t>(numbers[object]);
+            if (number >= scene.spheres.size() && number < scene.spheres.size() + scene.planes.size()) continue;
+            aimed.objects.push_back(object);
+            for (std::size_t i = 0; i < kMostLanes; ++i)
+                aimed.rays.push_back(random_aimed_ray(random, bounds, aim_at(random, scene, number)));
+        }
+    return aimed;
+}
+
+inline std::vector<FoundHit> hits_of_one(KernelRunner& runner, const PackedJob& job, const AimedRays& aimed) {
+    const auto job_buffer = runner.filled("job", job.words);
+    const auto rays = runner.filled("rays", ray_words(aimed.rays));
+    const auto objects = runner.filled("objects", aimed.objects);
+    auto distances = runner.constant<float>("distances", aimed.rays.size(), 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, const Buffer<std::uint32_t>&, Buffer<float>&>(
+        "hits_of_one", aimed.rays.size(), job_buffer, rays, objects, distances);
+    const std::vector<float> t = runner.read(distances);
+    std::vector<FoundHit> hits;
+    for (std::size_t i = 0; i < t.size(); ++i)
+        if (t[i] != kFarLimit) hits.push_back({aimed.objects[i / kMostLanes], aimed.rays[i], t[i]});
+    return hits;
+}
+
+}  // namespace raya

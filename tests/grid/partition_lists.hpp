@@ -1,0 +1,58 @@
+// Partitions of random scenes, and what is in their lists.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "grid/hits_of_one.hpp"
+#include "grid/partition.hpp"
+#include "grid/random_walks.hpp"
+
+namespace raya {
+
+/// The last has no bounds: every object is in every list.
+inline const std::vector<std::string> kFormats = {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10", "e7m20t", "e5m6"};
+
+inline bool lists(const Partition& p, std::uint32_t voxel, std::uint32_t object) {
+    return std::binary_search(p.objects.begin() + p.starts[voxel], p.objects.begin() + p.starts[voxel + 1], object);
+}
+
+inline std::size_t lists_with(const Partition& p, std::uint32_t object) {
+    return static_cast<std::size_t>(std::count(p.objects.begin(), p.objects.end(), object));
+}
+
+/// Numbers of the finite objects.
+inline std::vector<std::uint32_t> finite_numbers(const PackedJob& job) {
+    const raya_objects all = header_of(job).objects;
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < all.spheres + all.planes + all.polygons + all.cones; ++i)
+        if (i < all.spheres || i >= all.spheres + all.planes) numbers.push_back(i);
+    return numbers;
+}
+
+inline Partition partition_of(const Scene& scene, const std::string& format, const Divisions& divisions) {
+    return partition(job_in(scene, parse_format(format)), parse_format(format), divisions);
+}
+
+/// Half of what the partition allows for, of a ray from the edge of the reach: the walk's tests hold it to a quarter.
+inline double walk_error(const raya_grid& grid) {
+    double largest = grid.reach;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(double{grid.low[axis]})});
+    return 8 * 0x1p-24 * largest;
+}
+
+inline Divisions random_divisions(SplitMix& random) {
+    const auto along = [&] { return 1 + below(random, 20); };
+    const std::uint32_t x = along(), y = along();
+    return {x, y, along()};
+}
+
+/// As large and small as coordinates and sizes may be in the format.
+inline double random_scale(SplitMix& random, const NumberFormat& format) {
+    const double room = format.exponent_bits == 5 ? 2 : format.exponent_bits == 6 ? 8 : 16;
+    return std::exp2(random.uniform(-room, room));
+}
+
+}  // namespace raya

@@ -1,0 +1,119 @@
+// Grids and rays for the walk: the usual ones, and those at which walks go wrong.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "grid/partition.hpp"
+#include "kernels/random_scene.hpp"
+#include "reference/reference.hpp"
+#include "scene/fp32.hpp"
+#include "scene/split_mix.hpp"
+#include "shared/grid.h"
+
+namespace raya {
+
+inline std::uint32_t below(SplitMix& random, std::uint32_t end) {
+    return static_cast<std::uint32_t>(random.next() % end);
+}
+
+/// Boxes of all sizes and proportions, about the origin and far from it.
+inline raya_grid random_grid(SplitMix& random) {
+    static const std::vector<Divisions> kinds = {{1, 1, 1},   {1, 7, 3}, {64, 64, 64}, {2, 2, 2},   {4, 4, 4},
+                                                 {16, 1, 16}, {5, 8, 3}, {1, 1, 200},  {30, 20, 10}};
+    const Divisions divisions = kinds[below(random, static_cast<std::uint32_t>(kinds.size()))];
+    const double scale = std::exp2(random.uniform(-20, 20));
+    const double away = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;  // of the box from the origin, in its size
+    raya_grid grid{};
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const double side = scale * (below(random, 5) == 0 ? random.uniform(1e-3, 1) : 1);
+        grid.low[axis] = static_cast<float>(random.uniform(-1, 1) * away * scale);
+        grid.cell[axis] = static_cast<float>(side / divisions[axis]);
+        grid.divisions[axis] = divisions[axis];
+    }
+    grid.reach = static_cast<float>(4 * (away + 1) * scale);
+    return grid;
+}
+
+/// The point of the grid at the given planes; between two of them for a fraction.
+inline Vec3 grid_point(const raya_grid& grid, const Vec3& planes) {
+    Vec3 p;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        const double whole = std::floor(planes[a]);
+        const double plane = raya_voxel_plane(grid, axis, static_cast<std::uint32_t>(whole));
+        p[a] = planes[a] == whole ? plane : plane + (planes[a] - whole) * grid.cell[axis];
+    }
+    return p;
+}
+
+inline Vec3 random_place(SplitMix& random, const raya_grid& grid) {
+    Vec3 planes;
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        planes[static_cast<int>(axis)] = random.uniform(0, grid.divisions[axis]);
+    return grid_point(grid, planes);
+}
+
+inline Vec3 random_corner(SplitMix& random, const raya_grid& grid) {
+    Vec3 planes;
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        planes[static_cast<int>(axis)] = below(random, grid.divisions[axis] + 1);
+    return grid_point(grid, planes);
+}
+
+inline Vec3 axis_direction(SplitMix& random) {
+    Vec3 d(0);
+    d[static_cast<int>(below(random, 3))] = below(random, 2) == 0 ? 1 : -1;
+    return d;
+}
+
+/// A direction whose components are +-1, +-0 or tiny, one of them at least 1.
+inline Vec3 awkward_direction(SplitMix& random) {
+    static constexpr std::array<double, 9> kSizes = {0, -0.0, 1, 1, 1e-4, 1e-10, 1e-19, 1e-21, 1e-30};
+    Vec3 d = axis_direction(random);
+    for (int axis = 0; axis < 3; ++axis)
+        if (d[axis] == 0) d[axis] = kSizes[below(random, kSizes.size())] * (below(random, 2) == 0 ? 1 : -1);
+    return d.normalized();
+}
+
+/// Rays of every kind: from inside, from outside and from far away; parallel to axes; along edges and faces of voxels;
+/// through corners.
+inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
+    const Vec3 inside = random_place(random, grid), corner = random_corner(random, grid);
+    const Vec3 other = below(random, 2) == 0 ? random_place(random, grid) : random_corner(random, grid);
+    const double size = std::sqrt(3.0) * (grid_point(grid, Vec3(0)) - inside).length() + grid.cell[0];
+    const Vec3 outside = inside + random.uniform(0.5, 3) * size * random_direction(random);
+    switch (below(random, 9)) {
+        case 0:
+            return {fp32(inside), fp32(random_direction(random))};
+        case 1:
+            return {fp32(outside), fp32((inside - outside).normalized())};
+        case 2:
+            return {fp32(outside), fp32((corner - fp32(outside)).normalized())};
+        case 3: {
+            const Vec3 far = fp32(inside + random.uniform(10, 1000) * size * random_direction(random));
+            return {far, fp32((other - far).normalized())};
+        }
+        case 4:
+            return {fp32(corner), fp32((other - corner + Vec3(1e-30)).normalized())};
+        case 5:
+            return {fp32(corner - random.uniform(-1, 2) * size * axis_direction(random)), axis_direction(random)};
+        case 6: {
+            const Vec3 d = axis_direction(random);
+            return {fp32(corner - random.uniform(0, 2) * size * d), d};
+        }
+        case 7: {
+            const Vec3 d = fp32(awkward_direction(random));
+            return {fp32((below(random, 2) == 0 ? corner : inside) - random.uniform(0, 2) * size * d), d};
+        }
+        default: {  // grazes a face
+            Vec3 d = random_direction(random);
+            d[static_cast<int>(below(random, 3))] *= std::exp2(random.uniform(-30, -10));
+            d = fp32(d.normalized());
+            return {fp32(corner - random.uniform(-0.5, 2) * size * d), d};
+        }
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,75 @@
+// Which voxels a ray crosses, in double precision and without walking: the box is halved until single voxels are left.
+// The oracle of kernels/grid/walk.clh.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "reference/reference.hpp"
+#include "shared/grid.h"
+
+namespace raya {
+
+/// Voxels first .. end - 1 along each axis.
+struct VoxelBlock {
+    std::array<std::uint32_t, 3> first, end;
+};
+
+inline VoxelBlock all_voxels(const raya_grid& g) {
+    return {{0, 0, 0}, {g.divisions[0], g.divisions[1], g.divisions[2]}};
+}
+
+inline VoxelBlock one_voxel(const raya_grid& g, std::uint32_t voxel) {
+    VoxelBlock b;
+    b.first = {voxel % g.divisions[0], voxel / g.divisions[0] % g.divisions[1],
+               voxel / g.divisions[0] / g.divisions[1]};
+    for (std::size_t axis = 0; axis < 3; ++axis) b.end[axis] = b.first[axis] + 1;
+    return b;
+}
+
+/// Where a ray is in a block: from in to out, empty where in > out.
+struct Passage {
+    double in = 0, out = std::numeric_limits<double>::infinity();
+    bool empty() const { return in > out; }
+};
+
+/// t >= 0 at which the ray is in the block, its planes moved outward by `slack` (inward where it is negative).
+inline Passage passage(const raya_grid& g, const VoxelBlock& block, const reference::Ray& ray, double slack) {
+    Passage p;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        const double low = raya_voxel_plane(g, axis, block.first[axis]) - slack - ray.origin[a];
+        const double high = raya_voxel_plane(g, axis, block.end[axis]) + slack - ray.origin[a];
+        if (ray.direction[a] == 0) {
+            if (low > 0 || high < 0) p.out = -1;
+            continue;
+        }
+        const double first = low / ray.direction[a], second = high / ray.direction[a];
+        p.in = std::max(p.in, std::min(first, second));
+        p.out = std::min(p.out, low > high ? -1 : std::max(first, second));
+    }
+    return p;
+}
+
+/// Voxels that the ray crosses more than `slack` inside their planes, in no order.
+inline void add_crossed(const raya_grid& g, const VoxelBlock& block, const reference::Ray& ray, double slack,
+                        std::vector<std::uint32_t>& voxels) {
+    if (passage(g, block, ray, -slack).empty()) return;
+    std::size_t longest = 0;
+    for (std::size_t axis = 1; axis < 3; ++axis)
+        if (block.end[axis] - block.first[axis] > block.end[longest] - block.first[longest]) longest = axis;
+    const std::uint32_t middle = (block.first[longest] + block.end[longest]) / 2;
+    if (middle == block.first[longest]) {
+        voxels.push_back(raya_voxel(g, block.first[0], block.first[1], block.first[2]));
+        return;
+    }
+    VoxelBlock lower = block, upper = block;
+    lower.end[longest] = upper.first[longest] = middle;
+    add_crossed(g, lower, ray, slack, voxels);
+    add_crossed(g, upper, ray, slack, voxels);
+}
+
+}  // namespace raya

@@ -1,0 +1,296 @@
+// The partition: lists that hold each object wherever a kernel can find a hit of it, and hardly anywhere else.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "error.hpp"
+#include "grid/hit_regions.hpp"
+#include "grid/partition.hpp"
+#include "grid/partition_lists.hpp"
+
+namespace raya {
+namespace {
+
+// Spheres at the two ends of a cube's diagonal, so that all that lies between does not change the box.
+Scene cornered_scene() {
+    Scene scene = empty_scene();
+    scene.view.from = Vec3(1);
+    scene.spheres = {{Vec3(-1), 1e-3, 0}, {Vec3(1), 1e-3, 0}};
+    return scene;
+}
+
+Vec3 middle_of(const raya_grid& g, const std::array<std::uint32_t, 3>& voxel) {
+    Vec3 middle;
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        middle[static_cast<int>(axis)] =
+            0.5 * (double{raya_voxel_plane(g, axis, voxel[axis])} + raya_voxel_plane(g, axis, voxel[axis] + 1));
+    return middle;
+}
+
+// Voxels that the surface of a sphere passes through.
+std::size_t touched_voxels(const raya_grid& g, const Sphere& s) {
+    std::size_t touched = 0;
+    for (std::uint32_t v = 0; v < raya_voxels(g); ++v) {
+        const std::array<std::uint32_t, 3> at = {v % g.divisions[0], v / g.divisions[0] % g.divisions[1],
+                                                 v / g.divisions[0] / g.divisions[1]};
+        double near = 0, far = 0;
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            const double low = raya_voxel_plane(g, axis, at[axis]) - s.centre[static_cast<int>(axis)];
+            const double high = raya_voxel_plane(g, axis, at[axis] + 1) - s.centre[static_cast<int>(axis)];
+            near += low > 0 || high < 0 ? std::min(low * low, high * high) : 0;
+            far += std::max(low * low, high * high);
+        }
+        touched += near <= s.radius * s.radius && s.radius * s.radius <= far;
+    }
+    return touched;
+}
+
+}  // namespace
+
+TEST_CASE("lists are ascending, hold finite objects alone, each at least once, and copies are the rest") {
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        SplitMix random(seed);
+        const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
+        const PackedJob job = job_in(of_all_sizes(mixed_scene(seed), random, 1), format);
+        const Divisions divisions = random_divisions(random);
+        const Partition p = partition(job, format, divisions);
+        CAPTURE(seed, divisions);
+        REQUIRE(p.starts.size() == divisions[0] * divisions[1] * divisions[2] + 1);
+        REQUIRE(p.starts.front() == 0);
+        REQUIRE(p.starts.back() == p.objects.size());
+        for (std::size_t v = 0; v + 1 < p.starts.size(); ++v) {
+            REQUIRE(p.starts[v] <= p.starts[v + 1]);
+            for (std::size_t i = p.starts[v] + 1; i < p.starts[v + 1]; ++i) REQUIRE(p.objects[i - 1] < p.objects[i]);
+        }
+        const std::vector<std::uint32_t> numbers = finite_numbers(job);
+        REQUIRE(std::set<std::uint32_t>(p.objects.begin(), p.objects.end()) ==
+                std::set<std::uint32_t>(numbers.begin(), numbers.end()));
+        REQUIRE(p.distinct == numbers.size());
+        REQUIRE(p.copies() == p.objects.size() - numbers.size());
+    }
+}
+
+TEST_CASE("an object well inside a voxel is registered there alone") {
+    for (const std::string format : {"fp32", "e6m15", "e6m15t", "e7m20t"}) {
+        const raya_grid grid = partition_of(cornered_scene(), format, {4, 4, 4}).grid;
+        for (std::uint64_t seed = 0; seed < 50; ++seed) {
+            SplitMix random(seed);
+            const std::array<std::uint32_t, 3> voxel = {below(random, 4), below(random, 4), below(random, 4)};
+            const ObjectKind& kind = object_kinds()[seed % object_kinds().size()];
+            if (kind.name == "plane") continue;
+            Scene scene = cornered_scene(), object;
+            kind.add(object, random);
+            // Within about 2 of its own place, of which 0.05 makes less than half a voxel.
+            const Vec3 middle = middle_of(grid, voxel);
+            for (const Sphere& s : object.spheres) scene.spheres.push_back({middle, 0.1 * s.radius, 0});
+            for (Polygon q : object.polygons) {
+                const Vec3 first = q.vertices[0];
+                for (Vec3& v : q.vertices) v = middle + 0.05 * (v - first);
+                if (!q.normals.empty()) q.vertices.resize(3), q.normals.resize(3);
+                scene.polygons.push_back(q);
+            }
+            for (const Cone& c : object.cones)
+                scene.cones.push_back(
+                    {middle, 0.05 * c.base_radius, middle + 0.05 * (c.apex - c.base), 0.05 * c.apex_radius, 0});
+            const Partition p = partition_of(scene, format, {4, 4, 4});
+            CAPTURE(format, seed, kind.name, voxel);
+            REQUIRE(bits({p.grid.low, p.grid.low + 3}) == bits({grid.low, grid.low + 3}));
+            REQUIRE(lists_with(p, 2) == 1);
+            REQUIRE(lists(p, raya_voxel(p.grid, voxel[0], voxel[1], voxel[2]), 2));
+        }
+    }
+}
+
+TEST_CASE("spheres are registered where their surfaces are and hardly anywhere else") {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        SplitMix random(seed);
+        Scene scene = cornered_scene();
+        for (int i = 0; i < 10; ++i) scene.spheres.push_back({random_point(random, 0.5), random.uniform(0.01, 0.5), 0});
+        const Partition p = partition_of(scene, "fp32", {12, 12, 12});
+        const Partition coarse = partition_of(scene, "e6m15", {12, 12, 12});
+        std::size_t exact = 0;
+        for (const Sphere& s : scene.spheres) exact += touched_voxels(p.grid, s);
+        CAPTURE(seed, exact);
+        CHECK(p.objects.size() >= exact);
+        CHECK(double(p.objects.size()) <= 1.01 * double(exact));
+        CHECK(double(coarse.objects.size()) <= 1.5 * double(exact));
+    }
+}
+
+// The walk may have a ray on the other side of the plane when it is at the sphere's border.
+TEST_CASE("an object that ends just before a plane is registered on both sides") {
+    Scene scene = cornered_scene();
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        SplitMix random(seed);
+        scene.spheres.resize(2);
+        scene.spheres.push_back({random_point(random, 0.3), 0.125, 0});
+        const PackedJob before = job_in(scene, {});
+        const raya_grid grid = partition(before, {}, {2, 2, 2}).grid;
+        const double slack = walk_error(grid), plane = raya_voxel_plane(grid, 0, 1);
+        const Box box = HitRegions(before, {}).region(2).box;
+        scene.spheres[2].centre.x += plane - slack - box.max.x;
+        const Partition p = partition_of(scene, "fp32", {2, 2, 2});
+        const auto listed = [&](std::uint32_t x) {
+            return lists(p, raya_voxel(grid, x, 0, 0), 2) || lists(p, raya_voxel(grid, x, 1, 0), 2) ||
+                   lists(p, raya_voxel(grid, x, 0, 1), 2) || lists(p, raya_voxel(grid, x, 1, 1), 2);
+        };
+        CAPTURE(seed, slack, plane);
+        REQUIRE(HitRegions(job_in(scene, {}), {}).region(2).box.max.x < plane);
+        REQUIRE(listed(0));
+        REQUIRE(listed(1));
+    }
+}
+
+TEST_CASE("large slanted objects are not everywhere") {
+    constexpr double kSide = 16;
+    Scene scene = cornered_scene();
+    scene.polygons = {{{{-1, -1, -1}, {1, -1, 0.5}, {1, 1, 1}, {-1, 1, -0.5}}, {}, 0}};
+    scene.cones = {{{-0.9, -0.9, -0.9}, 0.01, {0.9, 0.9, 0.9}, 0.01, 0}};
+    const Partition p = partition_of(scene, "fp32", {16, 16, 16});
+    CHECK(double(lists_with(p, 2)) < 2.5 * kSide * kSide);
+    CHECK(double(lists_with(p, 3)) < 14 * kSide);
+}
+
+TEST_CASE("the box holds everything, and its sides are never 0") {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        SplitMix random(seed);
+        const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
+        const ObjectKind& kind = object_kinds()[seed % object_kinds().size()];
+        const PackedJob job =
+            job_in(of_all_sizes(random_scene(kind, seed, 5), random, random_scale(random, format)), format);
+        const HitRegions regions(job, format);
+        const Divisions divisions = random_divisions(random);
+        const raya_grid grid = partition(job, format, divisions).grid;
+        CAPTURE(seed, kind.name, format_name(format), divisions);
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            REQUIRE(grid.cell[axis] > 0);
+            REQUIRE(grid.divisions[axis] == divisions[axis]);
+            const double low = raya_voxel_plane(grid, axis, 0), high = raya_voxel_plane(grid, axis, divisions[axis]);
+            REQUIRE(low < high);
+            for (std::size_t i = 0; i < regions.size() && regions.known(); ++i) {
+                const Box box = regions.region(i).box;
+                REQUIRE(low + walk_error(grid) < box.min[static_cast<int>(axis)]);
+                REQUIRE(high - walk_error(grid) > box.max[static_cast<int>(axis)]);
+            }
+        }
+    }
+}
+
+TEST_CASE("a scene in a plane has a box with three sides") {
+    Scene scene = empty_scene();
+    scene.polygons = {{{{0, 0, 2}, {1, 0, 2}, {0, 1, 2}}, {}, 0}};
+    const Partition p = partition_of(scene, "fp32", {3, 3, 3});
+    for (const float cell : p.grid.cell) CHECK(cell > 0);
+    CHECK(p.copies() > 0);
+}
+
+TEST_CASE("a scene without finite objects has a box with side 1 and empty lists") {
+    Scene scene = empty_scene();
+    for (const bool planes : {false, true}) {
+        if (planes) scene.planes = {{{0, 0, 1}, 1, 0}};
+        const Partition p = partition_of(scene, "fp32", {2, 3, 4});
+        CHECK(p.objects.empty());
+        CHECK(p.distinct == 0);
+        CHECK(p.copies() == 0);
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            CHECK(raya_voxel_plane(p.grid, axis, 0) == -0.5F);
+            CHECK(raya_voxel_plane(p.grid, axis, p.grid.divisions[axis]) == Approx(0.5F));
+        }
+    }
+}
+
+TEST_CASE("where no bound is known every object is in every list") {
+    Scene coarse = mixed_scene(1), huge = random_scene(object_kinds()[0], 2), steep = mixed_scene(3);
+    huge.spheres[0].centre.x = 100;
+    steep.cones.push_back({{0, 0, 0}, 1, {0, 0, 0.01}, 0, 0});
+    const std::vector<std::pair<Scene, std::string>> cases = {
+        {coarse, "e8m9"}, {coarse, "e5m6t"}, {huge, "e5m10"}, {steep, "e6m15"}};
+    for (const auto& [scene, format] : cases) {
+        const PackedJob job = job_in(scene, parse_format(format));
+        const Partition p = partition(job, parse_format(format), {3, 4, 5});
+        CAPTURE(format);
+        CHECK(p.objects.size() == 60 * finite_numbers(job).size());
+        CHECK(p.grid.reach == (format[1] == '5' ? 0x1p7F : format[1] == '6' ? 0x1p15F : 0x1p60F));
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            CHECK(raya_voxel_plane(p.grid, axis, 0) <= -2 * p.grid.reach);
+            CHECK(raya_voxel_plane(p.grid, axis, p.grid.divisions[axis]) >= 2 * p.grid.reach);
+        }
+    }
+    CHECK(partition_of(coarse, "e5m10", {3, 4, 5}).grid.reach < 0x1p6F);
+    CHECK(divisions_for(job_in(coarse, parse_format("e8m9")), parse_format("e8m9"), 1000) == Divisions{1, 1, 1});
+}
+
+TEST_CASE("the reach is twice the scene's extent; with planes, on which rays start anywhere, as far as voxels allow") {
+    Scene scene = mixed_scene(1);
+    REQUIRE(!scene.planes.empty());
+    for (const std::string format : {"fp32", "e6m15", "e8m12"}) {
+        CAPTURE(format);
+        const double extent = header_of(job_in(scene, parse_format(format))).extent;
+        const double far = partition_of(scene, format, {2, 2, 2}).grid.reach / extent;
+        CHECK(far == std::exp2(std::round(std::log2(far))));
+        CHECK(far >= (format == "fp32" ? 4 : 2));
+        CHECK(far <= 1024);
+        CHECK(partition_of(scene, format, {200, 200, 200}).grid.reach / extent <= far);
+    }
+    CHECK(partition_of(scene, "e6m15", {2, 2, 2}).grid.reach < partition_of(scene, "fp32", {2, 2, 2}).grid.reach);
+    scene.planes.clear();
+    for (const std::string format : {"fp32", "e6m15", "e8m12"})
+        CHECK(partition_of(scene, format, {2, 2, 2}).grid.reach ==
+              2 * header_of(job_in(scene, parse_format(format))).extent);
+}
+
+TEST_CASE("divisions that cannot be are refused") {
+    const Scene scene = mixed_scene(1);
+    using Catch::Contains;
+    CHECK_THROWS_WITH(partition_of(scene, "fp32", {0, 1, 1}), Contains("0x1x1 voxels"));
+    CHECK_THROWS_AS(partition_of(scene, "fp32", {1, 1, 0}), UserError);
+    CHECK_THROWS_WITH(partition_of(scene, "fp32", {257, 256, 256}), Contains("at most 16777216"));
+    CHECK_THROWS_AS(partition_of(scene, "fp32", {0xffffffffu, 0xffffffffu, 2}), UserError);
+    CHECK_THROWS_AS(partition_of(scene, "fp32", {1u << 31, 2, 1}), UserError);
+    CHECK_THROWS_AS(partition_of(scene, "fp32", {1u << 24, 1u << 24, 1u << 24}), UserError);
+    CHECK_THROWS_WITH(partition_of(random_scene(object_kinds()[0], 1, 1025), "e5m6", {1024, 1024, 1}),
+                      Contains("fewer voxels"));
+    CHECK(partition_of(scene, "fp32", {1, 1u << 20, 1}).starts.size() == (1u << 20) + 1);
+}
+
+TEST_CASE("divisions for an accelerating grid are as many as asked for, and their voxels near cubes") {
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        SplitMix random(seed);
+        Scene scene = cornered_scene();
+        for (int axis = 0; axis < 3; ++axis) scene.spheres[1].centre[axis] = -1 + std::exp2(random.uniform(-6, 6));
+        const NumberFormat format{};
+        const PackedJob job = job_in(scene, format);
+        const double wanted = std::exp2(random.uniform(0, 24));
+        const Divisions d = divisions_for(job, format, static_cast<std::uint64_t>(wanted));
+        const raya_grid grid = partition(job, format, d).grid;
+        CAPTURE(seed, wanted, d, grid.cell);
+        const double voxels = double(d[0]) * d[1] * d[2];
+        REQUIRE(voxels <= wanted * 1.0001);
+        REQUIRE(voxels >= wanted / 3);
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t b = 0; b < 3; ++b)
+                if (d[a] > 1 && d[b] > 1) REQUIRE(grid.cell[a] < 2.5F * grid.cell[b]);
+    }
+    const PackedJob job = job_in(cornered_scene(), {});
+    CHECK(divisions_for(job, {}, 1000) == Divisions{10, 10, 10});
+    CHECK(divisions_for(job, {}, 1) == Divisions{1, 1, 1});
+    CHECK(divisions_for(job, {}, 0) == Divisions{1, 1, 1});
+    CHECK(divisions_for(job, {}, std::uint64_t{1} << 40) == Divisions{256, 256, 256});
+}
+
+TEST_CASE("divisions for an accelerating grid are fewer where rounding spreads objects over many voxels") {
+    Scene scene = cornered_scene();
+    SplitMix random(1);
+    for (int i = 0; i < 20000; ++i) scene.spheres.push_back({random_point(random, 1), 0.02, 0});
+    for (const char* name : {"fp32", "e6m15", "e5m10", "e6m10t"}) {
+        const NumberFormat format = parse_format(name);
+        const PackedJob job = job_in(scene, format);
+        const Divisions d = divisions_for(job, format, 20000);
+        CAPTURE(name, d);
+        CHECK((d[0] * d[1] * d[2] > 18000) == (format.fraction_bits > 10));
+        CHECK(partition(job, format, d).objects.size() < 16 * scene.spheres.size());
+    }
+}
+
+}  // namespace raya

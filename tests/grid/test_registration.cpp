@@ -1,0 +1,103 @@
+// Registration: every hit that a kernel computes, however it is rounded, lies in its object's region and in voxels that
+// list the object. RAYA_REGISTRATION_CASES=200 asks for more scenes of each kind and format than the usual run.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+
+#include "grid/hit_regions.hpp"
+#include "grid/partition_lists.hpp"
+#include "scene/nff_reader.hpp"
+
+namespace raya {
+namespace {
+
+const std::vector<std::string> kScenes = {"spheres", "planes", "polygons", "cones", "mirrors", "glass"};
+
+std::uint64_t cases_wanted() {
+    const char* given = std::getenv("RAYA_REGISTRATION_CASES");
+    return given ? std::strtoull(given, nullptr, 10) : 20;
+}
+
+// Do all voxels within `error` of the point, of which there is one at least, list the object?
+bool listed_about(const Partition& p, const Vec3& point, double error, std::uint32_t object) {
+    std::array<std::vector<std::uint32_t>, 3> at;
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        for (std::uint32_t k = 0; k < p.grid.divisions[axis]; ++k) {
+            const double x = point[static_cast<int>(axis)];
+            if (raya_voxel_plane(p.grid, axis, k) <= x + error && x - error <= raya_voxel_plane(p.grid, axis, k + 1))
+                at[axis].push_back(k);
+        }
+    for (const std::uint32_t z : at[2])
+        for (const std::uint32_t y : at[1])
+            for (const std::uint32_t x : at[0])
+                if (!lists(p, raya_voxel(p.grid, x, y, z), object)) return false;
+    return !at[0].empty() && !at[1].empty() && !at[2].empty();
+}
+
+// Hits lie in their objects' regions, and in voxels that list their objects.
+std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scene, const NumberFormat& format,
+                       int turns) {
+    const PackedJob job = job_in(scene, format);
+    const Partition p = partition(job, format, random_divisions(random));
+    const double error = walk_error(p.grid), extent = header_of(job).extent;
+    const RayBounds bounds{format, std::min(2 * extent, double{p.grid.reach})};
+    const std::vector<FoundHit> hits = hits_of_one(runner, job, aim_at_all(random, scene, bounds, turns));
+    const HitRegions regions(job, format);
+    const std::vector<std::uint32_t> numbers = finite_numbers(job);
+    for (const FoundHit& hit : hits) {
+        const Vec3 point = hit.point();
+        const auto i = std::lower_bound(numbers.begin(), numbers.end(), hit.object) - numbers.begin();
+        const bool in_region =
+            !regions.known() || regions.region(static_cast<std::size_t>(i)).touches(Box(point, point));
+        if (in_region && listed_about(p, point, error, hit.object)) continue;
+        CAPTURE(scene.name, format_name(format), p.grid.divisions, hit.object, hit.ray.origin, hit.ray.direction, hit.t,
+                point);
+        FAIL((in_region ? "a hit in a voxel that does not list its object" : "a hit outside its object's region"));
+    }
+    return hits.size();
+}
+
+Scene scene_of(const std::string& name) { return read_nff(RAYA_SOURCE_DIR "/scenes/" + name + ".nff"); }
+
+}  // namespace
+
+TEST_CASE("every hit lies in voxels that list its object") {
+    std::size_t hits = 0, cases = 0;
+    for (const std::string& name : kFormats) {
+        const NumberFormat format = parse_format(name);
+        KernelRunner runner("../grid/hits_probe.cl", {4, true, format});
+        for (const ObjectKind& kind : object_kinds())
+            for (std::uint64_t seed = 0; seed < cases_wanted() && kind.name != "plane"; ++seed, ++cases) {
+                SplitMix random(seed);
+                CAPTURE(kind.name, seed);
+                const double scale = random_scale(random, format);
+                hits += check_hits(runner, random, of_all_sizes(random_scene(kind, seed, 8), random, scale), format, 2);
+            }
+        for (const std::string& scene : kScenes) {
+            SplitMix random(1);
+            hits += check_hits(runner, random, scene_of(scene), format, 1);
+        }
+    }
+    CHECK(cases == 7 * 7 * cases_wanted());
+    CHECK(hits > 80 * cases);
+}
+
+// Nearly parallel to a cylinder, half a unit off it: b is 0 and a c is so small that it is flushed to 0.
+TEST_CASE("a discriminant that is flushed to 0 is no hit of a cone") {
+    const NumberFormat format = parse_format("e6m15");
+    KernelRunner runner("../grid/hits_probe.cl", {4, true, format});
+    Scene scene = empty_scene();
+    scene.cones = {{{0, 0, 0}, 0.125, {1, 0, 0}, 0.125, 0}};
+    AimedRays rays;
+    rays.objects = {0};
+    for (int i = 0; i < 8; ++i) {
+        rays.rays.push_back({{-1, -std::ldexp(1.0, -14), 0.5}, {1, std::ldexp(1.0, -14), 0}});
+        rays.rays.push_back({{0.5, 2, 0}, {0, -1, 0}});
+    }
+    const std::vector<FoundHit> hits = hits_of_one(runner, job_in(scene, format), rays);
+    CHECK(hits.size() == 8);
+    for (const FoundHit& hit : hits) CHECK(hit.t == 2 - 0.125);
+}
+
+}  // namespace raya

@@ -1,0 +1,266 @@
+// The walk of rays through grids against a reference that does not walk: every voxel in its turn, none missed, none
+// visited from afar.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "grid/random_walks.hpp"
+#include "grid/reference_walk.hpp"
+#include "kernels/kernel_runner.hpp"
+#include "kernels/probe.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kGrids = 50, kRays = 2048;  // in each grid
+
+struct Walks {
+    std::vector<std::uint32_t> wide, voxels;  // [ray], [ray][most]
+    std::vector<float> leaves;                // [ray][most]
+    std::vector<float> resumed_leaves;        // [ray][most]: of walks taken up anew in each voxel
+    std::vector<std::uint32_t> resumed_nexts;
+};
+
+std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
+    std::vector<std::uint32_t> words(sizeof grid / 4);
+    std::memcpy(words.data(), &grid, sizeof grid);
+    return words;
+}
+
+std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
+
+Walks walk(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
+    const std::size_t count = rays.size() / 7;
+    const std::uint32_t most = most_voxels(grid);
+    const auto grid_buffer = runner.filled("grid", grid_words(grid));
+    const auto ray_buffer = runner.filled("rays", rays);
+    auto wide = runner.constant<std::uint32_t>("wide", count, 0);
+    auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
+    auto leaves = runner.constant<float>("leaves", count * most, 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
+               Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
+                                                       leaves);
+    auto again = runner.constant<float>("again", count * most, 0);
+    auto nexts = runner.constant<std::uint32_t>("nexts", count * most, RAYA_NO_VOXEL);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, const Buffer<std::uint32_t>&,
+               Buffer<float>&, Buffer<std::uint32_t>&>("resumes", count, grid_buffer, ray_buffer, most, voxels, again,
+                                                       nexts);
+    return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(again), runner.read(nexts)};
+}
+
+/// One walk, as it came out.
+struct Path {
+    std::vector<std::uint32_t> voxels;
+    std::vector<float> leaves;
+};
+
+Path path_of(const Walks& walks, std::size_t ray, std::uint32_t most) {
+    Path path;
+    for (std::size_t i = ray * most; i < (ray + 1) * most && walks.voxels[i] != RAYA_NO_VOXEL; ++i) {
+        path.voxels.push_back(walks.voxels[i]);
+        path.leaves.push_back(walks.leaves[i]);
+    }
+    return path;
+}
+
+/// How far a ray can be from its voxel: a quarter of what host/grid/partition.cpp allows for.
+double walk_error(const raya_grid& grid, const reference::Ray& ray) {
+    double box = 0, origin = 0;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        for (const std::uint32_t k : {0u, grid.divisions[axis]})
+            box = std::max(box, std::abs(double{raya_voxel_plane(grid, axis, k)}));
+        origin = std::max(origin, std::abs(ray.origin[static_cast<int>(axis)]));
+    }
+    return 4 * 0x1p-24 * (origin + box);
+}
+
+/// Steps lead to a neighbour, the way in which the ray goes, and t never falls.
+bool steps_forward(const raya_grid& grid, const reference::Ray& ray, const Path& path) {
+    for (std::size_t i = 1; i < path.voxels.size(); ++i) {
+        const VoxelBlock from = one_voxel(grid, path.voxels[i - 1]), to = one_voxel(grid, path.voxels[i]);
+        int steps = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (to.first[axis] == from.first[axis]) continue;
+            const bool up = ray.direction[static_cast<int>(axis)] > 0;
+            steps += to.first[axis] == from.first[axis] + (up ? 1u : -1u) ? 1 : 4;
+        }
+        if (steps != 1 || path.leaves[i] < path.leaves[i - 1]) return false;
+    }
+    return true;
+}
+
+/// In every voxel, from when the walk enters it to when it leaves it, the ray is no farther from it than `error`.
+bool keeps_near(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
+    const Passage box = passage(grid, all_voxels(grid), ray, -error);
+    for (std::size_t i = 0; i < path.voxels.size(); ++i) {
+        const Passage near = passage(grid, one_voxel(grid, path.voxels[i]), ray, error);
+        const double from = i == 0 ? near.in : std::max(box.in, double{path.leaves[i - 1]}), to = path.leaves[i];
+        if (near.empty() || to > near.out || (from <= to && from < near.in)) return false;
+    }
+    return true;
+}
+
+/// The voxels that the ray crosses by more than `error` are on its path.
+bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
+    std::vector<std::uint32_t> crossed;
+    add_crossed(grid, all_voxels(grid), ray, error, crossed);
+    const std::set<std::uint32_t> visited(path.voxels.begin(), path.voxels.end());
+    return std::all_of(crossed.begin(), crossed.end(), [&](std::uint32_t v) { return visited.count(v) == 1; });
+}
+
+/// A ray may visit the box only if it comes near to it before its limit, and must if it crosses it before then.
+enum class Entry { kMust, kMay, kMustNot };
+
+Entry entry(const raya_grid& grid, const reference::Ray& ray, double limit, double error) {
+    const Passage near = passage(grid, all_voxels(grid), ray, error),
+                  crossed = passage(grid, all_voxels(grid), ray, -error);
+    if (near.empty() || near.in > limit) return Entry::kMustNot;
+    return !crossed.empty() && crossed.in <= limit ? Entry::kMust : Entry::kMay;
+}
+
+double random_limit(SplitMix& random, const raya_grid& grid, const reference::Ray& ray) {
+    const Passage box = passage(grid, all_voxels(grid), ray, 0);
+    if (below(random, 4) != 0 || box.empty()) return kFarLimit;
+    static constexpr std::array<double, 4> kShares = {0.3, 0.99, 1.01, 1.5};
+    return fp32(box.in * kShares[below(random, kShares.size())]);
+}
+
+/// A grid, rays through it and their limits.
+struct WalkCase {
+    explicit WalkCase(std::uint64_t seed) {
+        SplitMix random(seed);
+        grid = random_grid(random);
+        for (std::size_t i = 0; i < kRays; ++i) {
+            rays.push_back(random_walk_ray(random, grid));
+            limits.push_back(random_limit(random, grid, rays.back()));
+        }
+    }
+    std::vector<float> words() const {
+        std::vector<float> words = ray_words(rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) words[i * 7 + 6] = static_cast<float>(limits[i]);
+        return words;
+    }
+
+    raya_grid grid{};
+    std::vector<reference::Ray> rays;
+    std::vector<double> limits;
+};
+
+void check_walk(const raya_grid& grid, const reference::Ray& ray, double limit, const Path& path) {
+    const double error = walk_error(grid, ray);
+    const Entry expected = entry(grid, ray, limit, error);
+    CAPTURE(ray.origin, ray.direction, limit, path.voxels, path.leaves, error);
+    if (expected == Entry::kMust) REQUIRE(!path.voxels.empty());
+    if (expected == Entry::kMustNot) REQUIRE(path.voxels.empty());
+    REQUIRE(steps_forward(grid, ray, path));
+    REQUIRE(keeps_near(grid, ray, path, error));
+    if (!path.voxels.empty()) REQUIRE(misses_none(grid, ray, path, error));
+}
+
+}  // namespace
+
+TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
+    KernelRunner runner("../grid/walk_probe.cl", {1, true, {}});
+    std::size_t visits = 0, empty = 0;
+    for (std::size_t seed = 0; seed < kGrids; ++seed) {
+        const WalkCase c(seed);
+        const Walks walks = walk(runner, c.grid, c.words());
+        CAPTURE(seed, c.grid.divisions, c.grid.low, c.grid.cell);
+        for (std::size_t i = 0; i < kRays; ++i) {
+            const Path path = path_of(walks, i, most_voxels(c.grid));
+            check_walk(c.grid, c.rays[i], c.limits[i], path);
+            visits += path.voxels.size();
+            empty += path.voxels.empty();
+        }
+    }
+    CHECK(empty > kGrids * kRays / 10);
+    CHECK(visits > kGrids * kRays * 10);
+}
+
+TEST_CASE("a walk that is taken up in any of its voxels goes on as before") {
+    KernelRunner runner("../grid/walk_probe.cl", {16, true, {}});
+    for (std::size_t seed = 0; seed < kGrids / 2; ++seed) {
+        const WalkCase c(seed);
+        const Walks walks = walk(runner, c.grid, c.words());
+        CAPTURE(seed);
+        REQUIRE(bits(walks.resumed_leaves) == bits(walks.leaves));
+        std::vector<std::uint32_t> nexts(walks.voxels.size(), RAYA_NO_VOXEL);
+        for (std::size_t i = 0; i + 1 < nexts.size(); ++i)
+            if (walks.voxels[i] != RAYA_NO_VOXEL) nexts[i] = walks.voxels[i + 1];
+        REQUIRE(walks.resumed_nexts == nexts);
+    }
+}
+
+TEST_CASE("walks of all widths of lanes are the same to the bit") {
+    std::vector<Walks> first;
+    for (const Variant& variant : variants()) {
+        CAPTURE(variant.name());
+        KernelRunner runner("../grid/walk_probe.cl", variant);
+        constexpr std::size_t kFewGrids = 8;
+        for (std::size_t seed = 0; seed < kFewGrids; ++seed) {
+            const WalkCase c(seed);
+            const Walks walks = walk(runner, c.grid, c.words());
+            if (first.size() < kFewGrids) first.push_back(walks);
+            CAPTURE(seed);
+            REQUIRE(walks.voxels == first[seed].voxels);
+            REQUIRE(bits(walks.leaves) == bits(first[seed].leaves));
+            REQUIRE(walks.wide == first[seed].wide);
+        }
+    }
+}
+
+// A ray from beyond the reach, or of a direction that is too long or too short, and nothing else.
+TEST_CASE("rays whose hits may lie elsewhere are wide") {
+    KernelRunner runner("../grid/walk_probe.cl", {16, true, {}});
+    constexpr float kBeyond = 0x1.000002p3F, kLong = 1 + 0x1.8p-21F, kTooLong = 1 + 0x1.4p-20F,
+                    kTooShort = 1 - 0x1.4p-20F;
+    raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
+    const std::vector<std::array<float, 6>> near = {
+        {0, 0, 0, 1, 0, 0}, {8, -8, 8, 0, 0.6F, 0.8F}, {0, 0, 0, 0, 0, kLong}};
+    const std::vector<std::array<float, 6>> wide = {
+        {kBeyond, 0, 0, 1, 0, 0},    {0, -kBeyond, 0, 1, 0, 0}, {0, 0, kBeyond, 1, 0, 0}, {0, 0, 0, kTooLong, 0, 0},
+        {0, 0, 0, 0, 0, -kTooShort}, {0, 0, 0, 0, NAN, 1},      {0, 0, 0, 0, 0, 0}};
+    std::vector<float> words;
+    for (const auto* rays : {&near, &wide})
+        for (const auto& ray : *rays) {
+            words.insert(words.end(), ray.begin(), ray.end());
+            words.push_back(kFarLimit);
+        }
+    const std::size_t rays = words.size() / 7;
+    words.resize(kMostLanes * 7, 0);
+    const std::vector<std::uint32_t> found = walk(runner, grid, words).wide;
+    for (std::size_t i = 0; i < rays; ++i) {
+        CAPTURE(i);
+        CHECK(found[i] == (i < near.size() ? 0 : 1));
+    }
+}
+
+// The kernels make no other directions; a ray that is reflected several times may be wide.
+TEST_CASE("rays of normalised directions, and those reflected once, are hardly ever wide") {
+    const raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
+    constexpr std::size_t kCount = 1 << 16;
+    for (const char* format : {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10t"}) {
+        KernelRunner runner("../grid/walk_probe.cl", {4, true, parse_format(format)});
+        SplitMix random(1);
+        std::vector<float> arms;
+        for (std::size_t i = 0; i < kCount * 2; ++i) {
+            const Vec3 arm = random.uniform(0.25, 4) * random_direction(random);
+            for (int axis = 0; axis < 3; ++axis) arms.push_back(round_to_format(arm[axis], parse_format(format)));
+        }
+        const auto grid_buffer = runner.filled("grid", grid_words(grid));
+        const auto arm_buffer = runner.filled("arms", arms);
+        auto wide = runner.constant<std::uint32_t>("wide", kCount * 2, 0);
+        runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&>(
+            "made_directions", kCount, grid_buffer, arm_buffer, wide);
+        const std::vector<std::uint32_t> found = runner.read(wide);
+        std::array<std::size_t, 2> counts{};
+        for (std::size_t i = 0; i < found.size(); ++i) counts[i % 2] += found[i];
+        CAPTURE(format);
+        CHECK(counts[0] == 0);
+        CHECK(counts[1] < kCount / 1000);
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,72 @@
+// The walk through a grid (kernels/grid/walk.clh), voxel by voxel. A work-group is one work-item, which takes the next V rays; `rays` holds
+// origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
+#include "grid/walk.clh"
+
+static inline ray load_ray(__global const float* rays, uint first) {
+    __global const float* from = rays + first * 7;
+    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
+    return r;
+}
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void walks(__global const raya_grid* restrict grid,
+           __global const float* restrict rays,
+           const uint most,               // voxels that a ray can visit
+           __global uint* restrict wide,    // [ray]: 0 or 1
+           __global uint* restrict voxels,  // [ray][most]: those that the walk is in, in order, then RAYA_NO_VOXEL
+           __global float* restrict leaves) // [ray][most]: t at which it leaves each of them
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const raya_grid g = *grid;
+    const ray r = load_ray(rays, first);
+    store_index(wide + first, 1, choose_index(is_wide(g, r), (index)(1), (index)(0)));
+    voxel_walk w = enter_grid(g, r, mask_all(1));
+    for (uint i = 0; i < most; ++i) {
+        const mask walking = w.voxel != RAYA_NO_VOXEL;
+        if (!mask_any(walking)) return;
+        store_index(voxels + first * most + i, most, w.voxel);
+        store_lanes(leaves + first * most + i, most, choose(walking, leaves_at(&w), num_all(0.0f)));
+        next_voxel(&w, g, walking);
+    }
+}
+
+// Takes each ray's walk up anew in every voxel of it.
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void resumes(__global const raya_grid* restrict grid,
+             __global const float* restrict rays,
+             const uint most,
+             __global const uint* restrict voxels,  // [ray][most], as `walks` makes them
+             __global float* restrict leaves,       // [ray][most]: t at which the ray leaves each voxel
+             __global uint* restrict nexts)         // [ray][most]: the voxel after each
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const raya_grid g = *grid;
+    const ray r = load_ray(rays, first);
+    for (uint lane = 0; lane < RAYA_LANES; ++lane)
+        for (uint i = (first + lane) * most; i < (first + lane + 1) * most && voxels[i] != RAYA_NO_VOXEL; ++i) {
+            const uint x = voxels[i] % g.divisions[0], y = voxels[i] / g.divisions[0] % g.divisions[1];
+            voxel_walk w = resume_walk(g, r, x, y, voxels[i] / g.divisions[0] / g.divisions[1]);
+            lanes_real t;
+            lanes_index next;
+            t.all = leaves_at(&w);
+            next_voxel(&w, g, mask_all(1));
+            next.all = w.voxel;
+            leaves[i] = t.lane[lane];
+            nexts[i] = next.lane[lane];
+        }
+}
+
+// Normalised directions, and those reflected once at normalised normals.
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void made_directions(__global const raya_grid* restrict grid,
+                     __global const float* restrict arms,  // [ray][6]: two vectors: towards the direction and towards the normal
+                     __global uint* restrict wide)         // [ray][2]: 0 or 1
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const vec zero = {num_all(0.0f), num_all(0.0f), num_all(0.0f)};
+    const vec d = vec_normalize(load_vec(arms + first * 6, 6)), n = vec_normalize(load_vec(arms + first * 6 + 3, 6));
+    const ray sent = {zero, d, num_all(1.0f)};
+    const ray reflected = {zero, vec_mad(n, num_mul(num_const(-2.0f), vec_dot(n, d)), d), num_all(1.0f)};
+    store_index(wide + first * 2, 2, choose_index(is_wide(*grid, sent), (index)(1), (index)(0)));
+    store_index(wide + first * 2 + 1, 2, choose_index(is_wide(*grid, reflected), (index)(1), (index)(0)));
+}

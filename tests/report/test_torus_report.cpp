@@ -1,0 +1,104 @@
+// The report of a torus: its keys, what it leaves out, and its summary.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "report/render_report.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+RenderReport report_with_figures() {
+    RenderReport report;
+    report.scene = "u.nff";
+    report.image = {512, 256, "t.png", "abc"};
+    report.machine.name = "torus";
+    report.machine.topology = "torus2d";
+    report.machine.mapping = "voxels";
+    report.machine.format = "fp32";
+    report.machine.pes = 64;
+    report.machine.pe_memory_bytes = 4 << 20;
+    report.machine.pe_memory_used_bytes = 3 << 19;
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) report.events[event] = 100 + event;
+    report.load = load_of(std::vector<std::uint64_t>(64, 10));
+    report.measured.render_s = 1;
+    TorusReport t;
+    t.nodes = {4, 4, 4};
+    t.voxels = {8, 4, 4};
+    t.links = "torus2d";
+    t.inject = "root";
+    t.supersteps = 31;
+    t.live_max = 900;
+    for (std::uint32_t kind = 1; kind < RAYA_KINDS; ++kind) t.made[kind] = t.ended[kind] = 10 * kind;
+    t.hops = 400;
+    t.link = {256, 3 << 20, 128 << 20};
+    t.queue = 2048;
+    t.queue_max = 77;
+    t.box = 512;
+    t.copies = 5;
+    t.modelled = {1, 2, 3, 4, 5, 6};
+    report.torus = t;
+    return report;
+}
+
+TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
+    const Json json = to_json(report_with_figures());
+    const Json& torus = json["torus"];
+    CHECK(torus["nodes"] == Json({4, 4, 4}));
+    CHECK(torus["voxels"] == Json({8, 4, 4}));
+    CHECK(torus["links"] == "torus2d");
+    CHECK(torus["inject"] == "root");
+    CHECK(torus["supersteps"] == 31);
+    CHECK(torus["live_max"] == 900);
+    CHECK(torus["packets"] ==
+          Json::parse(R"({"primary": {"made": 10, "ended": 10}, "reflected": {"made": 20, "ended": 20},
+        "refracted": {"made": 30, "ended": 30}, "shadow": {"made": 40, "ended": 40}, "return": {"made": 50, "ended": 50}})"));
+    CHECK(torus["hops"] == 400);
+    CHECK(torus["bytes_per_link"] ==
+          Json::parse(R"({"links": 256, "max": 3145728, "mean": 524288.0, "total": 134217728})"));
+    CHECK(torus["queue"] == 2048);
+    CHECK(torus["queue_max"] == 77);
+    CHECK(torus["box"] == 512);
+    CHECK(torus["copies"] == 5);
+    CHECK(json["walks"] == 100 + RAYA_WALKS);
+    CHECK(json["steps"] == 100 + RAYA_STEPS);
+    CHECK(json["modelled_ms"] == Json::parse(R"({"compute": 1.0, "messages": 2.0, "processor": 3.0, "links": 4.0,
+        "overlapped": 5.0, "stepwise": 6.0})"));
+    CHECK(json["load"]["per_pe"].size() == 64);
+    for (const char* ring : {"antialias", "communication"}) CHECK_FALSE(json.contains(ring));
+    RenderReport ring = report_with_figures();
+    ring.torus.reset();
+    CHECK_FALSE(to_json(ring).contains("torus"));
+    for (const char* key : {"antialias", "communication", "modelled_ms"}) CHECK(to_json(ring).contains(key));
+}
+
+// Reflected rays take one multiplication each, ten moves and two branches, and make a packet of 16 words.
+TEST_CASE("a torus's budget is a T805's operations", "[report]") {
+    EventCounts events{};
+    events[RAYA_REFLECTED] = 3;
+    events[RAYA_SPHERE_TESTS] = 2;
+    CHECK(t805_budget_json(events) ==
+          Json::parse(R"({"additions": 22, "multiplications": 21, "divisions": 0, "roots": 0, "moves": 30,
+              "packet_words": 48, "branches": 8})"));
+}
+
+TEST_CASE("the summary of a torus names nodes, packets, links, memory and both bounds of its time", "[report]") {
+    const std::string text = human_summary(report_with_figures());
+    INFO(text);
+    for (const char* part :
+         {"512 x 256 pixels on torus (4x4x4 nodes, torus2d, 8x4x4 voxels), fp32",
+          "packets 150 = 10 primary + 20 reflected + 30 refracted + 40 shadow + 50 return; 31 supersteps",
+          "400 packets over 256 links, 128.0 MB in all; 512.0 KB over one on average, 3.0 MB over the busiest",
+          "1536.0 KB in the fullest node of 4096 KB; queues of 2048 packets, at most 77 used; 5 copies of objects",
+          "5.0 ms if nothing waits", "6.0 ms step by step"})
+        CHECK_THAT(text, Catch::Contains(part));
+    CHECK_THAT(text, !Catch::Contains("mapping"));
+    RenderReport one = report_with_figures();
+    one.torus->link = {};
+    CHECK_THAT(human_summary(one), Catch::Contains("over 0 links, 0 bytes in all"));
+}
+
+}  // namespace
+}  // namespace raya

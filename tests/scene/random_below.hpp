@@ -1,0 +1,14 @@
+// Random whole numbers for tests.
+#pragma once
+#include <cstdint>
+
+#include "scene/split_mix.hpp"
+
+namespace raya {
+
+/// In [0, end).
+inline std::uint32_t random_below(SplitMix& random, std::uint64_t end) {
+    return static_cast<std::uint32_t>(random.next() % end);
+}
+
+}  // namespace raya

@@ -1,0 +1,132 @@
+// The study of divisions: its shapes, what it concludes from made-up counts, and counts that hold of any grid.
+#include <fmt/format.h>
+
+#include <random>
+
+#include "machine/t805.hpp"
+#include "scene/generate.hpp"
+#include "study/divisions.hpp"
+#include "study/grid_papers.hpp"
+#include "study/page_shape.hpp"
+#include "study/studies.hpp"
+#include "study_cases.hpp"
+
+namespace raya {
+namespace {
+
+// As many sphere tests, steps and ms as told; a ray each.
+GridRun made_up(std::uint32_t power, std::uint64_t objects, std::uint64_t tests, std::uint64_t steps, double ms) {
+    GridRun run{
+        .label = fmt::format("{} objects", objects), .objects = objects, .divisions = divisions_of_power(power)};
+    run.events[RAYA_PRIMARY] = 1;
+    run.events[RAYA_SPHERE_TESTS] = tests;
+    run.events[RAYA_WALKS] = 1;
+    run.events[RAYA_STEPS] = steps;
+    run.measured_ms = ms;
+    return run;
+}
+
+double modelled_s(const GridRun& run) {
+    double cycles = 0;
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event)
+        cycles += static_cast<double>(t805_cycles()[event]) * static_cast<double>(run.events[event]);
+    return cycles * 40e-9;
+}
+
+// 64, 256, 512 and 1024 objects whose tests are fewest at `best` of the powers.
+std::vector<DivisionsSeries> made_up_paper(const std::array<std::uint32_t, 4>& best) {
+    std::vector<DivisionsSeries> all;
+    const std::uint64_t objects[] = {64, 256, 512, 1024};
+    for (std::size_t i = 0; i < 4; ++i) {
+        all.emplace_back();
+        for (std::uint32_t k = 0; k <= 13; ++k) {
+            const std::uint64_t far = k < best[i] ? best[i] - k : k - best[i];
+            all.back().push_back(made_up(k, objects[i], 1000 + 100 * far, 1, 5.0 + double(far)));
+        }
+    }
+    return all;
+}
+
+TEST_CASE("divisions are the paper's, and powers of two as near to cubes as can be", "[study]") {
+    CHECK(divisions_of_power(0) == Divisions{1, 1, 1});
+    CHECK(divisions_of_power(5) == Divisions{4, 4, 2});
+    CHECK(divisions_of_power(6) == Divisions{4, 4, 4});
+    CHECK(divisions_of_power(8) == Divisions{8, 8, 4});
+    CHECK(divisions_of_power(10) == Divisions{16, 8, 8});
+    for (std::uint32_t k = 0; k <= 24; ++k) {
+        const Divisions d = divisions_of_power(k);
+        CAPTURE(k);
+        CHECK(d[0] * d[1] * d[2] == 1u << k);
+        CHECK((d[0] >= d[1] && d[1] >= d[2] && d[0] <= 2 * d[2]));
+    }
+}
+
+TEST_CASE("divisions tells where the least lies beside the paper's objects", "[study]") {
+    const StudyPage page = divisions_page(96, made_up_paper({6, 8, 10, 13}), true);
+    check_shape(page);
+    check_page(page);
+    const Comparison& tests = comparison_of(page, "fewest tests, 512 objects");
+    CHECK(tests.paper == 512.0);
+    CHECK(tests.ours == 1024);
+    CHECK(tests.remark == "16x8x8");
+    CHECK(comparison_of(page, "least modelled time, 64 objects").ours == 64);
+    CHECK_FALSE(comparison_of(page, "least measured time, 64 objects").paper);
+    CHECK(says(page,
+               "Fewest tests: at divisions 64 for 64 objects, 256 for 256 objects, 1024 for 512 objects, 8192 for 1024 "
+               "objects; divisions = objects is it for 2 of 4; 1 at the last division tried, so it may lie beyond."));
+    CHECK(says(page, "and 1.00, 1.00, 1.10, 1.30 times the fewest tests; an object then lies in 1.00, 1.00,"));
+    const StudyPage all_equal = divisions_page(96, made_up_paper({6, 8, 9, 10}), true);
+    CHECK(says(all_equal, "divisions = objects is it for 4 of 4."));
+    CHECK(says(all_equal, "Divisions = objects takes 1.00 (64 objects), 1.00 (256"));
+}
+
+TEST_CASE("divisions' falls are figures at 32 over those at 1024", "[study]") {
+    std::mt19937 random(51);
+    for (int i = 0; i < 100; ++i) {
+        std::vector<DivisionsSeries> all(1);
+        for (std::uint32_t k = 0; k <= 13; ++k)
+            all[0].push_back(made_up(k, 1024, 1 + random() % 100000, 1 + random() % 1000, 1 + double(random() % 100)));
+        CAPTURE(i);
+        const StudyPage page = divisions_page(96, all, true);
+        check_page(page);
+        const std::string what = "32 over 1024 divisions, 1024 objects: ";
+        const GridRun &few = all[0][5], &many = all[0][10];
+        const auto check = [&](const char* figure, double ours, double paper) {
+            CHECK(comparison_of(page, what + figure).ours == Approx(ours).epsilon(1e-12));
+            CHECK(comparison_of(page, what + figure).paper == paper);
+        };
+        check("modelled time", modelled_s(few) / modelled_s(many), 313.0 / 60);
+        check("measured time", few.measured_ms / many.measured_ms, 313.0 / 60);
+        check("tests", double(few.events[RAYA_SPHERE_TESTS]) / double(many.events[RAYA_SPHERE_TESTS]), 5);
+        const auto& row = table_of(page, "divisions").rows.at(5);
+        CHECK(cell_number(row[5]) == double(few.events[RAYA_SPHERE_TESTS]));
+        CHECK(cell_number(row[9]) == Approx(modelled_s(few)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("one voxel tests every object for every ray, and finer ones fewer", "[study]") {
+    Session session(choose_device(""));
+    Laboratory lab(session, 17);
+    const StudyPage page = study_divisions(lab, {{"even", generate_uniform(64, {4, 4, 4})}});
+    check_shape(page);
+    for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);
+    const auto& rows = table_of(page, "divisions").rows;
+    REQUIRE(rows.size() == 14);
+    const double rays = cell_number(rows[0][4]);
+    CHECK(rays > 17 * 17);
+    CHECK(cell_number(rows[0][3]) == 0);
+    CHECK(cell_number(rows[0][5]) <= 64 * rays);
+    CHECK(cell_number(rows[0][6]) <= rays);
+    CHECK(cell_number(rows[0][5]) <= 64 * cell_number(rows[0][6]));
+    CHECK(cell_number(rows[0][5]) > 48 * cell_number(rows[0][6]));  // a shadow ray may end before the last object
+    for (const auto& row : rows) {
+        CHECK(cell_number(row[4]) == rays);  // the image does not depend on the grid
+        CHECK(cell_number(row[7]) == Approx(cell_number(row[5]) / rays));
+    }
+    CHECK(cell_number(rows[6][5]) < cell_number(rows[0][5]) / 8);
+    CHECK(cell_number(rows[13][6]) > cell_number(rows[6][6]));
+    CHECK(cell_number(rows[13][3]) > cell_number(rows[6][3]));
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,35 @@
+// Closest hits in one voxel of a torus node, and what lies there. A work-group is one work-item, which takes the next V
+// rays; `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
+#include "shading/shade.clh"
+#include "shared/node.h"
+
+static inline ray load_ray(__global const float* rays, uint first) {
+    __global const float* from = rays + first * 7;
+    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
+    return r;
+}
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void voxel_hits(__global const uint* restrict memories,  // of all nodes
+                __global const float* restrict rays,
+                const uint start,                        // of the node's words
+                const uint voxel,                        // its number in the node; as many as the node has: planes alone
+                __global uint* restrict objects,         // [ray]: number among the voxel's objects, RAYA_NO_OBJECT
+                __global float* restrict distances,      // [ray]
+                __global float* restrict places)         // [ray][3][3]: G, N, colour; of a miss undefined
+{
+    const words scene = memories + start;
+    __global const raya_node* const node = (__global const raya_node*)scene;
+    __global const raya_voxel_memory* const voxels = (__global const raya_voxel_memory*)(scene + node->voxels_at);
+    const objects_words all = voxel < node->voxels ? &voxels[voxel].objects : &node->job.objects;
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const ray r = load_ray(rays, first);
+    const hit h = closest_hit(scene, all, r);
+    store_index(objects + first, 1, h.object);
+    store_lanes(distances + first, 1, h.distance);
+    const mask struck = h.object != RAYA_NO_OBJECT;
+    const hit_place p = find_place(scene, all, struck, h, r.origin, r.direction);
+    store_vec(places + first * 9, 9, p.geometric);
+    store_vec(places + first * 9 + 3, 9, p.normal);
+    store_vec(places + first * 9 + 6, 9, surface_colour(scene, struck, &p));
+}

@@ -1,0 +1,132 @@
+// Scenes, partitions and nodes at random. Node memory does not ask why an object is in a voxel's list, so that the
+// lists here are drawn by lot, and the tests need no geometry.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <set>
+#include <vector>
+
+#include "kernels/random_scene.hpp"
+#include "torus/node_memory.hpp"
+#include "torus/random_torus.hpp"
+
+namespace raya {
+
+inline raya_job job_header(const PackedJob& job) {
+    raya_job header;
+    std::memcpy(&header, job.words.data(), sizeof header);
+    return header;
+}
+
+inline PackedJob pack(const Scene& scene) {
+    JobSettings settings;
+    settings.mapping = {16, 16, 1, 0, RAYA_FOLD_CYCLIC};
+    return pack_job(scene, settings);
+}
+
+/// Up to `most` objects of each kind, none now and then, of one to twelve surfaces; no lights to five.
+inline Scene scene_by_lot(SplitMix& random, std::uint64_t most) {
+    Scene scene = empty_scene();
+    for (const ObjectKind& kind : object_kinds()) {
+        const std::uint32_t count = random.next() % 3 == 0 ? 0 : random_below(random, most + 1);
+        for (std::uint32_t i = 0; i < count; ++i) kind.add(scene, random);
+    }
+    scene.surfaces.resize(1 + random_below(random, 12));
+    for (Surface& surface : scene.surfaces) surface.colour = random_point(random, 1);
+    const auto paint = [&](auto& objects) {
+        for (auto& object : objects) object.surface = static_cast<int>(random_below(random, scene.surfaces.size()));
+    };
+    paint(scene.spheres);
+    paint(scene.planes);
+    paint(scene.polygons);
+    paint(scene.cones);
+    scene.lights.resize(random_below(random, 6), {{1, 2, 3}, {}});
+    for (Light& light : scene.lights) light.position = random_point(random, 5);
+    return scene;
+}
+
+/// Voxels with lists of no meaning, and a box of no size.
+inline Partition empty_partition(const Divisions& divisions) {
+    Partition p;
+    p.grid = {{-1, -2, -3}, {0.25F, 0.5F, 0.75F}, {divisions[0], divisions[1], divisions[2]}, 100};
+    p.starts.assign(raya_voxels(p.grid) + 1, 0);
+    return p;
+}
+
+/// Lists [voxel] as a partition; objects not yet in ascending order, planes not allowed.
+inline Partition partition_of(const Divisions& divisions, const std::vector<std::set<std::uint32_t>>& lists) {
+    Partition p = empty_partition(divisions);
+    std::set<std::uint32_t> distinct;
+    for (std::size_t voxel = 0; voxel < lists.size(); ++voxel) {
+        p.objects.insert(p.objects.end(), lists[voxel].begin(), lists[voxel].end());
+        p.starts[voxel + 1] = static_cast<std::uint32_t>(p.objects.size());
+        distinct.insert(lists[voxel].begin(), lists[voxel].end());
+    }
+    p.distinct = distinct.size();
+    return p;
+}
+
+/// The numbers of all objects of a job but its planes.
+inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
+    const raya_objects o = job_header(job).objects;
+    std::vector<std::uint32_t> finite;
+    for (std::uint32_t i = 0; i < o.spheres + o.planes + o.polygons + o.cones; ++i)
+        if (i < o.spheres || i >= o.spheres + o.planes) finite.push_back(i);
+    return finite;
+}
+
+/// Every finite object in one to `most` voxels, as often as not in one.
+inline Partition partition_by_lot(SplitMix& random, const PackedJob& job, const Divisions& divisions,
+                                  std::uint32_t most) {
+    std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);
+    for (const std::uint32_t object : finite_objects(job)) {
+        const std::uint32_t times = random.next() % 2 ? 1 : 1 + random_below(random, most);
+        for (std::uint32_t i = 0; i < times; ++i) lists[random_below(random, lists.size())].insert(object);
+    }
+    return partition_of(divisions, lists);
+}
+
+/// A node's words, which notes which of them were read.
+class NodeReader {
+  public:
+    NodeReader(const NodeMemories& memories, std::uint32_t node)
+        : words_(memories.words.begin() + memories.starts[node], memories.words.begin() + memories.starts[node + 1]),
+          reads_(words_.size(), 0),
+          header_(take<raya_node>(0)) {}
+
+    const raya_node& header() const { return header_; }
+    std::size_t size() const { return words_.size(); }
+    raya_voxel_memory voxel(std::uint32_t local) {
+        return take<raya_voxel_memory>(header_.voxels_at + local * sizeof(raya_voxel_memory) / 4);
+    }
+    std::uint32_t word(std::size_t at) { return section(at, 1)[0]; }
+    std::vector<std::uint32_t> section(std::size_t at, std::size_t count) {
+        std::vector<std::uint32_t> words;
+        for (std::size_t i = at; i < at + count; ++i) {
+            ++reads_.at(i);
+            words.push_back(words_.at(i));
+        }
+        return words;
+    }
+
+    /// How many words were read that many times.
+    std::size_t words_read(int times) const {
+        return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), times));
+    }
+
+  private:
+    template <class T>
+    T take(std::size_t at) {
+        const std::vector<std::uint32_t> words = section(at, sizeof(T) / 4);
+        T value;
+        std::memcpy(&value, words.data(), sizeof value);
+        return value;
+    }
+
+    std::vector<std::uint32_t> words_;
+    std::vector<int> reads_;
+    raya_node header_;
+};
+
+}  // namespace raya

@@ -1,0 +1,138 @@
+// Renders on the torus machine in a line, for tests. A device is required: without one these tests fail, they are not
+// skipped.
+#pragma once
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "kernels/random_scene.hpp"
+#include "ring/render_scene.hpp"
+#include "scene/random_below.hpp"
+#include "shared/traffic.h"
+#include "torus/topology.hpp"
+#include "torus/torus_renderer.hpp"
+
+namespace raya {
+
+struct TorusCase {
+    std::uint32_t width = 20, height = 16;
+    std::array<std::uint32_t, 3> nodes = {2, 2, 2};
+    Divisions voxels{};  // 0: one for each node
+    Links links = Links::kTorus3d;
+    Injection inject = Injection::kAll;
+    std::uint32_t queue = 0;             // 0: as many packets as there are by default
+    std::uint32_t lanes = 0, group = 0;  // 0: the device's own
+    std::uint32_t bounces = 4;
+    std::string format = "fp32";
+    PixelSubset pixels{};
+    std::filesystem::path kernel_dir{};
+};
+
+inline TorusSettings settings_of(const TorusCase& c) {
+    TorusSettings s;
+    s.machine = machine_named("torus");
+    s.width = c.width;
+    s.height = c.height;
+    s.torus = make_torus(c.nodes, c.links);
+    s.voxels = c.voxels[0] ? c.voxels : Divisions{c.nodes[0], c.nodes[1], c.nodes[2]};
+    s.inject = c.inject;
+    s.queue = c.queue;
+    s.pixels = c.pixels;
+    s.bounces = c.bounces;
+    s.format = parse_format(c.format);
+    s.kernels.lanes = c.lanes;
+    s.kernels.group_size = c.group;
+    s.kernels.kernel_dir = c.kernel_dir;
+    return s;
+}
+
+/// One line that says all of a case, to see where a test fails.
+inline std::string case_text(const TorusCase& c) {
+    return fmt::format("{}x{} nodes {} voxels {} {} {} queue {} lanes {} group {} bounces {} {} pixels {}+{}", c.width,
+                       c.height, sides_text(c.nodes), sides_text(c.voxels), links_name(c.links),
+                       c.inject == Injection::kRoot ? "root" : "all", c.queue, c.lanes, c.group, c.bounces, c.format,
+                       c.pixels.first, c.pixels.stride);
+}
+
+inline TorusResult render_torus(Session& session, const Scene& scene, const TorusCase& c, const PacketSink& sink = {}) {
+    return TorusRenderer(session, scene, settings_of(c)).render({}, sink);
+}
+
+inline TorusResult render_torus(const Scene& scene, const TorusCase& c, const PacketSink& sink = {}) {
+    Session session(choose_device(""));
+    return render_torus(session, scene, c, sink);
+}
+
+/// What does not depend on the machine: the image, and what happened to rays. Tests and steps do, and highlights, which
+/// a node shades before it knows whether the light is hidden.
+inline std::string one_image(const Image& image, const EventCounts& e) {
+    return fmt::format("{} primary {} hits {} reflected {} refracted {} shadow {} shadow hits {} lit {} shaded {}",
+                       pixel_hash(image), e[RAYA_PRIMARY], e[RAYA_PRIMARY_HITS], e[RAYA_REFLECTED], e[RAYA_REFRACTED],
+                       e[RAYA_SHADOW], e[RAYA_SHADOW_HITS], e[RAYA_LIT], e[RAYA_SHADED]);
+}
+
+inline std::string one_image(const TorusResult& r) { return one_image(r.image, r.events); }
+
+/// The ring machine's image of the same size, format and bounces: every ray against every object.
+inline std::string ring_image(const Scene& scene, const TorusCase& c) {
+    const RingCase ring{.width = c.width,
+                        .height = c.height,
+                        .pes = 1,
+                        .offset = 0,
+                        .lanes = 4,
+                        .group = 1,
+                        .bounces = c.bounces,
+                        .format = c.format};
+    const RingResult r = render_scene(scene, ring);
+    return one_image(r.image, r.all.events);
+}
+
+/// Adds a packet's words to those of each link on its way by the rule of the ways; `words`: [node][link].
+inline void add_way(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
+    for (std::uint32_t node = p.source; node != p.destination;) {
+        const std::uint32_t link = raya_next_link(torus, node, p.destination);
+        words.at(std::size_t{node} * RAYA_LINKS + link) += raya_packet_words(p.head[RAYA_PACKET_STATE]);
+        node = raya_link_end(torus, node, link);
+    }
+}
+
+inline std::uint32_t lights_of(const Scene& scene) { return static_cast<std::uint32_t>(scene.lights.size()); }
+
+/// Objects of every kind, one to four lights, an eye in the middle of them, about them or far away.
+inline Scene random_view_scene(std::uint64_t seed) {
+    Scene scene = mixed_scene(seed);
+    SplitMix random(seed ^ 0x5eed);
+    const double distances[] = {0.5, 2.5, 6, 25};
+    const double away = distances[random_below(random, 4)];
+    scene.view.from = away * random_direction(random);
+    scene.view.at = random_point(random, 1);
+    scene.view.up = random_direction(random);
+    scene.view.angle_degrees = away > 20 ? 25 : random.uniform(30, 110);
+    // Planes hide all that is behind them: none, some or all of them stay.
+    scene.planes.resize(random_below(random, scene.planes.size() + 1));
+    scene.lights.resize(1 + random_below(random, 4), {random_point(random, 8), {}});
+    return scene;
+}
+
+/// Seeds of random_view_scene() in which rays of all kinds are many, and some are lit.
+inline constexpr std::array<std::uint64_t, 11> kRichScenes = {27, 41, 53, 63, 14, 19, 35, 8, 21, 29, 69};
+
+/// Objects of every kind before a mirror that is very far away, seen in it: rays that come back from there are wide.
+inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
+    Scene scene = mixed_scene(seed);
+    SplitMix random(seed ^ 0xfa5);
+    // Beyond 1024 times the scene's size in fp32, beyond a few times in formats of fewer bits.
+    const double away = (format == "fp32" ? 20'000 : 500) * (1 + random_below(random, 3));
+    scene.surfaces.push_back({.colour = {0.9, 1, 0.9}, .diffuse = 0.5, .specular = 0.5, .shine = 5});
+    scene.planes = {{{-1, 0, 0}, -away, static_cast<int>(scene.surfaces.size()) - 1}};
+    scene.view.from = {kSceneReach + 1, random.uniform(-1, 1), random.uniform(-1, 1)};
+    scene.view.at = scene.view.from + Vec3{1, 0, 0};
+    scene.view.angle_degrees = 200 / away;  // what the mirror shows is twice as far away
+    return scene;
+}
+
+}  // namespace raya

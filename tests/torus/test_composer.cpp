@@ -1,0 +1,166 @@
+// Contributions in the order of their pixels' ray trees, whatever the order in which they come, and sums rounded once a
+// step.
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernels/kernel_options.hpp"
+#include "scene/random_below.hpp"
+#include "torus/composer.hpp"
+
+namespace raya {
+namespace {
+
+// The contributions of a random ray tree in the order in which a depth-first walk meets them, reflection before
+// refraction: what the sorting must find again.
+class TreeWalk {
+  public:
+    TreeWalk(SplitMix& random, std::vector<ReturnPacket>& to, std::uint32_t pixel)
+        : random_(random), to_(to), pixel_(pixel) {}
+
+    void ray(std::uint32_t path, std::uint32_t level, std::uint32_t deepest) {
+        add(path, level, 0);
+        for (std::uint32_t light = 1; light <= 3; ++light)
+            if (below(2)) add(path, level, light);
+        if (below(6) == 0) add(path, level, RAYA_MOST_LIGHTS);
+        if (level == deepest) return;
+        const std::uint32_t which = level < 3 ? 1 + below(3) : 1u << below(2);
+        if (which & 1) ray(raya_path_reflected(path), level + 1, deepest);
+        if (which & 2) ray(raya_path_refracted(path, level), level + 1, deepest);
+    }
+
+    std::uint32_t below(std::uint32_t end) { return random_below(random_, end); }
+
+  private:
+    void add(std::uint32_t path, std::uint32_t level, std::uint32_t light) {
+        ReturnPacket p{};
+        p[RAYA_PACKET_PIXEL] = pixel_;
+        p[RAYA_PACKET_STATE] = raya_state(RAYA_KIND_RETURN, level, light) | (below(2) ? RAYA_STATE_FRESH : 0);
+        p[RAYA_PACKET_PATH] = path;
+        for (const int word :
+             {int{RAYA_PACKET_WEIGHT}, int{RAYA_PACKET_COLOUR}, RAYA_PACKET_COLOUR + 1, RAYA_PACKET_COLOUR + 2})
+            p[static_cast<std::size_t>(word)] = std::bit_cast<std::uint32_t>(static_cast<float>(1 + below(1 << 23)));
+        to_.push_back(p);
+    }
+
+    SplitMix& random_;
+    std::vector<ReturnPacket>& to_;
+    std::uint32_t pixel_;
+};
+
+void shuffle(std::vector<ReturnPacket>& packets, SplitMix& random) {
+    for (std::size_t i = packets.size(); i > 1; --i) std::swap(packets[i - 1], packets[random_below(random, i)]);
+}
+
+std::vector<float> colours_of(const std::vector<ReturnPacket>& packets) {
+    std::vector<float> colours;
+    for (const ReturnPacket& p : packets)
+        for (const int word :
+             {RAYA_PACKET_COLOUR + 0, RAYA_PACKET_COLOUR + 1, RAYA_PACKET_COLOUR + 2, RAYA_PACKET_WEIGHT + 0})
+            colours.push_back(std::bit_cast<float>(p[static_cast<std::size_t>(word)]));
+    return colours;
+}
+
+// Lists of random numbers of the format for `pixels` pixels, some of them empty. Products and sums stay within 53 bits,
+// so that double holds them exactly: whole multiples of 2^-38, below 2^12.
+Contributions random_lists(SplitMix& random, const NumberFormat& format, std::uint32_t pixels) {
+    Contributions lists;
+    lists.starts = {0};
+    for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+        const std::uint32_t count = random_below(random, 5) ? random_below(random, 60) : 0;
+        for (std::uint32_t i = 0; i < 4 * count; ++i) {
+            const double number = std::ldexp(random.uniform(1, 2), -static_cast<int>(random_below(random, 4)));
+            const bool zero = random_below(random, 20) == 0;
+            lists.colours.push_back(zero ? 0 : round_to_format(number, format));
+        }
+        lists.starts.push_back(lists.starts.back() + count);
+    }
+    return lists;
+}
+
+// c w + sum, rounded once.
+float add_to(float sum, float c, float w, const NumberFormat& format) {
+    if (format.is_fp32()) return std::fma(c, w, sum);
+    return round_to_format(std::fma(static_cast<double>(c), w, sum), format);
+}
+
+std::vector<float> sums_of(const Contributions& lists, const NumberFormat& format) {
+    std::vector<float> image;
+    for (std::size_t pixel = 0; pixel + 1 < lists.starts.size(); ++pixel)
+        for (std::size_t colour = 0; colour < 3; ++colour) {
+            float sum = 0;
+            for (std::size_t i = lists.starts[pixel]; i < lists.starts[pixel + 1]; ++i)
+                sum = add_to(sum, lists.colours[4 * i + colour], lists.colours[4 * i + 3], format);
+            image.push_back(sum);
+        }
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("contributions come in the order of a depth-first walk through their pixels' trees", "[torus]") {
+    const std::uint64_t seed = 311;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+        CAPTURE(seed, i);
+        SplitMix random(seed + i);
+        const std::uint32_t pixels = 1 + random_below(random, 12);
+        std::vector<ReturnPacket> walked;
+        std::vector<std::uint32_t> starts = {0};
+        for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+            TreeWalk walk(random, walked, pixel);
+            if (walk.below(4)) walk.ray(0, 0, walk.below(6) ? walk.below(6) : 31);
+            starts.push_back(static_cast<std::uint32_t>(walked.size()));
+        }
+        std::vector<ReturnPacket> returns = walked;
+        shuffle(returns, random);
+        const Contributions sorted = sort_contributions(returns, pixels);
+        CHECK(sorted.starts == starts);
+        CHECK((sorted.colours == colours_of(walked)));
+    }
+}
+
+TEST_CASE("a contribution that comes twice, or to no pixel, is noticed", "[torus]") {
+    SplitMix random(5);
+    for (int i = 0; i < 100; ++i) {
+        CAPTURE(i);
+        std::vector<ReturnPacket> returns;
+        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) TreeWalk(random, returns, pixel).ray(0, 0, 3);
+        CHECK_NOTHROW(sort_contributions(returns, 4));
+        CHECK_THROWS_AS(sort_contributions(returns, 3), std::logic_error);
+        ReturnPacket twice = returns[random_below(random, returns.size())];
+        twice[RAYA_PACKET_STATE] ^= RAYA_STATE_FRESH;  // says how it travels, not which it is
+        twice[RAYA_PACKET_WEIGHT] ^= 1;
+        returns.push_back(twice);
+        shuffle(returns, random);
+        CHECK_THROWS_AS(sort_contributions(returns, 4), std::logic_error);
+    }
+}
+
+TEST_CASE("no contributions at all make a black image", "[torus]") {
+    const Contributions none = sort_contributions({}, 7);
+    CHECK(none.colours.empty());
+    CHECK(none.starts == std::vector<std::uint32_t>(8, 0));
+    Session session(choose_device(""));
+    Composer composer(session, build_options({}, session.device()), {});
+    CHECK(composer.compose(none) == std::vector<float>(21, 0));
+}
+
+TEST_CASE("pixels are sums whose every step is rounded once", "[torus]") {
+    const std::uint64_t seed = 40'961;
+    SplitMix random(seed);
+    const std::string name = GENERATE("fp32", "spa22", "e8m12t", "e5m6");
+    KernelOptions options;
+    options.format = parse_format(name);
+    Session session(choose_device(""));
+    Composer composer(session, build_options(options, session.device()), {});
+    for (int i = 0; i < 40; ++i) {
+        const std::uint32_t pixels = 1 + random_below(random, 300);
+        CAPTURE(seed, i, name, pixels);
+        const Contributions lists = random_lists(random, options.format, pixels);
+        CHECK((composer.compose(lists) == sums_of(lists, options.format)));
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,292 @@
+// Nothing is lost on the way: packets made and ended, hops and words, and the ways that rays take from voxel to voxel.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <tuple>
+
+#include "report/gunzip.hpp"
+#include "torus/packet_trace.hpp"
+#include "torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+struct Recorded {
+    TorusResult result;
+    std::vector<PacketRecord> records;
+};
+
+Recorded record(Session& session, const Scene& scene, const TorusCase& c) {
+    Recorded r;
+    r.result = render_torus(session, scene, c, [&](const PacketRecord& p) { r.records.push_back(p); });
+    return r;
+}
+
+std::uint32_t state_of(const PacketRecord& p) { return p.head[RAYA_PACKET_STATE]; }
+std::uint32_t kind_of(const PacketRecord& p) { return raya_state_kind(state_of(p)); }
+bool is_wide(const PacketRecord& p) { return state_of(p) & RAYA_STATE_WIDE; }
+
+std::uint64_t sum(const std::vector<std::uint64_t>& values) {
+    return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
+}
+
+// Which ray of which pixel: the records of one ray are the stages of its way.
+using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
+RayKey key_of(const PacketRecord& p) {
+    return {p.head[RAYA_PACKET_PIXEL], p.head[RAYA_PACKET_PATH], raya_state_level(state_of(p)),
+            raya_state_light(state_of(p))};
+}
+
+std::map<RayKey, std::vector<PacketRecord>> ways_of(const std::vector<PacketRecord>& records) {
+    std::map<RayKey, std::vector<PacketRecord>> ways;
+    for (const PacketRecord& p : records)
+        if (kind_of(p) != RAYA_KIND_RETURN) ways[key_of(p)].push_back(p);
+    return ways;
+}
+
+// What a packet of each kind is made for, as the events say.
+void check_kinds(const TorusResult& r, std::uint64_t pixels) {
+    const EventCounts& e = r.events;
+    CHECK(r.made == r.ended);
+    CHECK(r.made[RAYA_KIND_NONE] == 0);
+    CHECK(r.made[RAYA_KIND_PRIMARY] == pixels);
+    CHECK(e[RAYA_PRIMARY] == pixels);
+    CHECK(r.made[RAYA_KIND_REFLECTED] == e[RAYA_REFLECTED]);
+    CHECK(r.made[RAYA_KIND_REFRACTED] == e[RAYA_REFRACTED]);
+    CHECK(r.made[RAYA_KIND_SHADOW] == e[RAYA_SHADOW]);
+    CHECK(e[RAYA_SHADOW] == e[RAYA_SHADOW_HITS] + e[RAYA_LIT]);
+    // An ambient term or the background from every ray, and what lights add.
+    CHECK(r.made[RAYA_KIND_RETURN] == pixels + e[RAYA_REFLECTED] + e[RAYA_REFRACTED] + e[RAYA_LIT]);
+}
+
+// The way of each record is the torus's distance, whatever waits on it.
+void check_traffic(const Recorded& r, const TorusSettings& s) {
+    std::uint64_t hops = 0;
+    std::vector<std::uint64_t> words(r.result.link_words.size());
+    std::size_t at_home = 0;
+    for (const PacketRecord& p : r.records) {
+        const std::uint64_t distance = raya_node_distance(s.torus, p.source, p.destination);
+        at_home += distance == 0;
+        hops += distance;
+        add_way(words, s.torus, p);
+    }
+    CHECK(at_home == 0);
+    CHECK(r.result.hops == hops);
+    CHECK(sum(r.result.link_packets) == hops);
+    CHECK(r.result.link_words == words);
+    for (std::uint32_t i = 0; i < r.result.link_words.size(); ++i)
+        if (s.torus.sides[i % RAYA_LINKS / 2] == 1) CHECK(r.result.link_words[i] == 0);
+    CHECK(std::is_sorted(r.records.begin(), r.records.end(), [](const PacketRecord& a, const PacketRecord& b) {
+        return std::tie(a.superstep, a.source) < std::tie(b.superstep, b.source);
+    }));
+    CHECK((r.records.empty() || r.records.back().superstep < r.result.supersteps.size()));
+    CHECK(r.result.supersteps.back().live <= s.width * s.height * 40u);
+}
+
+std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
+    const raya_place at = raya_unpack_place(p.head[RAYA_PACKET_VOXEL]);
+    return raya_voxel(grid, at.at[0], at.at[1], at.at[2]);
+}
+
+// Voxels of a ray that walks: next to each other, on one side of each axis, none twice.
+bool walks(const std::vector<PacketRecord>& way) {
+    bool right = true;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        const raya_place a = raya_unpack_place(way[i - 1].head[RAYA_PACKET_VOXEL]);
+        const raya_place b = raya_unpack_place(way[i].head[RAYA_PACKET_VOXEL]);
+        std::uint32_t steps = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int step = static_cast<int>(b.at[axis]) - static_cast<int>(a.at[axis]);
+            steps += static_cast<std::uint32_t>(std::abs(step));
+            const raya_place first = raya_unpack_place(way[0].head[RAYA_PACKET_VOXEL]);
+            const int way_so_far = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
+            right = right && step * way_so_far >= 0;  // never back
+        }
+        right = right && steps == 1;
+    }
+    return right;
+}
+
+// Voxels of a wide ray, from that of the node where it was made on: all in turn, of a shadow ray until it is stopped;
+// then at most one more stage, to where it is shaded.
+bool tours(const std::vector<PacketRecord>& way, const raya_torus& torus, const raya_grid& grid) {
+    const std::uint32_t voxels = raya_voxels(grid);
+    const std::size_t visits = way.size() - (state_of(way.back()) & RAYA_STATE_FOUND ? 1 : 0);
+    std::uint32_t number = raya_voxel_of_node(torus, grid, way[0].source, 0);
+    bool right = visits < voxels && (visits == voxels - 1 || kind_of(way[0]) == RAYA_KIND_SHADOW);
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        number = (number + 1) % voxels;
+        right = right && (i >= visits || number_of(grid, way[i]) == number);
+        right = right && (i < visits) == !(state_of(way[i]) & RAYA_STATE_FOUND);
+    }
+    return right;
+}
+
+struct Ways {
+    std::size_t walked = 0, wide = 0;
+};
+
+// One voxel in each node, so that every step is a record.
+Ways check_ways(const Recorded& r, const TorusSettings& s) {
+    Ways ways;
+    std::size_t broken = 0, early = 0, wrong_walks = 0, wrong_tours = 0;
+    raya_grid grid{};
+    std::copy_n(s.voxels.begin(), 3, grid.divisions);
+    for (const auto& [key, way] : ways_of(r.records)) {
+        for (std::size_t i = 1; i < way.size(); ++i) {
+            broken += way[i].source != way[i - 1].destination;
+            early += way[i].superstep <= way[i - 1].superstep;
+        }
+        (is_wide(way[0]) ? ways.wide : ways.walked) += 1;
+        wrong_walks += !is_wide(way[0]) && !walks(way);
+        wrong_tours += is_wide(way[0]) && !tours(way, s.torus, grid);
+    }
+    CHECK(broken == 0);
+    CHECK(early == 0);
+    CHECK(wrong_walks == 0);
+    CHECK(wrong_tours == 0);
+    return ways;
+}
+
+// A return goes to the root, and each place in a pixel's tree is answered once.
+void check_returns(const Recorded& r) {
+    std::map<RayKey, int> answers;
+    std::size_t astray = 0;
+    for (const PacketRecord& p : r.records) {
+        if (kind_of(p) != RAYA_KIND_RETURN) continue;
+        astray += p.destination != RAYA_ROOT || p.source == RAYA_ROOT;
+        ++answers[key_of(p)];
+    }
+    CHECK(astray == 0);
+    CHECK(std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.second == 1; }));
+}
+
+struct Row {
+    std::uint64_t superstep = 0, source = 0, destination = 0, bytes = 0, ray = 0;
+    std::string kind, parent;
+};
+
+std::vector<Row> rows_of(const std::string& csv) {
+    std::istringstream lines(csv);
+    std::string line;
+    std::getline(lines, line);
+    std::vector<Row> rows;
+    while (std::getline(lines, line)) {
+        std::replace(line.begin(), line.end(), ',', ' ');
+        std::istringstream fields(line);
+        Row row;
+        fields >> row.superstep >> row.source >> row.destination >> row.kind >> row.bytes >> row.ray >> row.parent;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("the traffic of random machines adds up", "[torus]") {
+    const std::uint64_t seed = 5150;
+    SplitMix random(seed);
+    Session session(choose_device(""));
+    Ways ways;
+    for (unsigned i = 0; i < 60; ++i) {
+        const std::string format = i % 6 == 0 ? "spa22" : "fp32";
+        const Scene scene =
+            i % 3 == 0 ? far_mirror_scene(seed + i, format) : random_view_scene(kRichScenes[i % kRichScenes.size()]);
+        TorusCase c{
+            .width = 1 + random_below(random, 24), .height = 1 + random_below(random, 20), .lanes = 4, .group = 1};
+        c.format = format;
+        for (std::uint32_t& side : c.nodes) side = 1 + random_below(random, 4);
+        c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
+        c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
+        const bool one_each = i % 4 > 0 || i % 8 == 0;
+        if (!one_each)
+            for (std::size_t axis = 0; axis < 3; ++axis) c.voxels[axis] = 1 + random_below(random, 7);
+        c.pixels.stride = i % 5 == 4 ? 1 + random_below(random, 5) : 1;
+        CAPTURE(seed, i, case_text(c));
+        const TorusSettings s = settings_of(c);
+        const Recorded r = record(session, scene, c);
+        check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1);
+        check_traffic(r, s);
+        check_returns(r);
+        if (!one_each) continue;
+        const Ways here = check_ways(r, s);
+        ways.walked += here.walked;
+        ways.wide += here.wide;
+    }
+    CHECK(ways.walked > 5'000);
+    CHECK(ways.wide > 100);
+}
+
+TEST_CASE("a record of the traffic changes nothing", "[torus]") {
+    Session session(choose_device(""));
+    const Scene scene = random_view_scene(kRichScenes[1]);
+    const TorusCase c{.nodes = {3, 2, 2}, .lanes = 4, .group = 1};
+    const TorusResult with = record(session, scene, c).result, without = render_torus(session, scene, c);
+    CHECK(one_image(with) == one_image(without));
+    CHECK(with.link_words == without.link_words);
+    CHECK(with.supersteps.size() == without.supersteps.size());
+}
+
+TEST_CASE("supersteps say what links and nodes did", "[torus]") {
+    const TorusResult r =
+        render_torus(random_view_scene(kRichScenes[2]), TorusCase{.nodes = {3, 2, 3}, .lanes = 4, .group = 1});
+    std::uint64_t cycles = 0, words = 0;
+    for (const Superstep& step : r.supersteps) {
+        cycles += step.most_cycles;
+        words += step.most_link_words;
+    }
+    const auto& loads = r.load.per_pe;
+    CHECK(cycles >= *std::max_element(loads.begin(), loads.end()));
+    CHECK(cycles <= sum(loads));
+    CHECK(words >= *std::max_element(r.link_words.begin(), r.link_words.end()));
+    CHECK(words <= sum(r.link_words));
+    CHECK(r.supersteps.back().most_link_words == 0);
+}
+
+TEST_CASE("the trace of a render's packets names rays and parents that belong together", "[torus]") {
+    const TorusCase c{
+        .nodes = {2, 3, 2}, .inject = GENERATE(Injection::kAll, Injection::kRoot), .lanes = 4, .group = 1};
+    PacketTrace trace;
+    const TorusResult r =
+        render_torus(random_view_scene(kRichScenes[0]), c, [&](const PacketRecord& record) { trace.add(record); });
+    const std::vector<Row> rows = rows_of(gunzip(trace.finish()));
+    REQUIRE(rows.size() == trace.rows());
+    std::map<std::uint64_t, Row> last;  // of each ray
+    std::size_t wrong_bytes = 0, changed = 0, broken = 0, twice = 0, primaries_with_parents = 0;
+    for (const Row& row : rows) {
+        wrong_bytes += row.bytes != (row.kind == "return" ? 32 : 64);
+        primaries_with_parents += (row.kind == "primary") != row.parent.empty();
+        const auto [before, is_new] = last.emplace(row.ray, row);
+        if (is_new) continue;
+        twice += row.kind == "return";
+        changed += before->second.kind != row.kind || before->second.parent != row.parent;
+        broken += before->second.destination != row.source || before->second.superstep >= row.superstep;
+        before->second = row;
+    }
+    CHECK(wrong_bytes == 0);
+    CHECK(changed == 0);
+    CHECK(broken == 0);
+    CHECK(twice == 0);
+    CHECK(primaries_with_parents == 0);
+    std::map<std::string, std::uint64_t> sent;  // rays of each kind that ever left a node
+    std::size_t strange_parents = 0;
+    for (const auto& [ray, row] : last) {
+        ++sent[row.kind];
+        const auto parent = row.parent.empty() ? last.end() : last.find(std::stoull(row.parent));
+        if (parent == last.end()) continue;  // it never left its node
+        const std::string& kind = parent->second.kind;
+        strange_parents += kind == "return" || (kind == "shadow" && row.kind != "return");
+    }
+    CHECK(strange_parents == 0);
+    CHECK(sent["primary"] <= r.made[RAYA_KIND_PRIMARY]);
+    CHECK(sent["reflected"] <= r.made[RAYA_KIND_REFLECTED]);
+    CHECK(sent["refracted"] <= r.made[RAYA_KIND_REFRACTED]);
+    CHECK(sent["shadow"] <= r.made[RAYA_KIND_SHADOW]);
+    CHECK(sent["return"] <= r.made[RAYA_KIND_RETURN]);
+    CHECK(sent["shadow"] > 0);
+    CHECK(sent["return"] > r.made[RAYA_KIND_RETURN] / 2);
+}
+
+}  // namespace raya

@@ -1,0 +1,187 @@
+// Links: every packet that a node puts into an outbox comes to the node at the other end of that link, once.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <vector>
+
+#include "torus/link_exchange.hpp"
+#include "torus/random_torus.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint32_t kPoison = 0xdead0000;
+
+// The boxes of a machine as a test fills and empties them: a model of what nodes do between exchanges.
+class Boxes {
+  public:
+    Boxes(Session& session, const raya_torus& torus, std::uint32_t capacity, std::uint32_t words)
+        : session_(session),
+          torus_(torus),
+          nodes_(raya_nodes(torus)),
+          capacity_(capacity),
+          words_(words),
+          links_(session, torus, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
+          status_(nodes_),
+          out_(links_.outboxes().size(), kPoison),
+          in_(out_.size()) {
+        links_.clear();
+        for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) out_[at(box)] = 0;
+    }
+
+    /// With a chance of 1 / `rareness` for each box that has room: up to `most` packets more.
+    void put(SplitMix& random, std::uint32_t rareness, std::uint32_t most) {
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            for (std::uint32_t node = 0; node < nodes_ && torus_.sides[link / 2] > 1; ++node) {
+                std::uint32_t& packets = outbox(link, node);
+                if (random_below(random, rareness) > 0) continue;
+                const std::uint32_t more = std::min(capacity_ - packets, random_below(random, most + 1));
+                for (std::uint32_t i = 0; i < more; ++i) put_packet(link, node, packets++);
+                out_[at(link * nodes_ + node)] = packets;
+            }
+    }
+
+    /// One exchange, and all that there is to be said of it.
+    void exchange(bool record) {
+        session_.write("test", links_.outboxes(), out_);
+        if (record)
+            links_.visit_new(status_, [&](std::uint32_t node, const std::uint32_t* packet) {
+                ++seen_[packet[0]];
+                CHECK(sources_[packet[0]] == node);
+            });
+        const std::vector<std::uint32_t> before = in_;
+        std::vector<std::uint64_t> words(std::size_t{nodes_} * RAYA_LINKS, 5), expected = words;
+        session_.clear_profile();
+        links_.exchange(status_, words);
+        count_ways();
+        session_.read("test", links_.inboxes(), in_);
+        std::vector<std::uint32_t> sent(links_.sent().size());
+        session_.read("test", links_.sent(), sent);
+        std::size_t wrong_flags = 0, touched = 0;
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            for (std::uint32_t node = 0; node < nodes_; ++node) {
+                const std::uint32_t end = raya_link_end(torus_, node, link), packets = outbox(link, node);
+                const bool busy = inbox(link, end) > 0, goes = packets > 0 && !busy;
+                wrong_flags += sent[link * nodes_ + node] != goes;
+                const std::size_t to = at(link * nodes_ + end);
+                if (busy) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
+                if (!busy && !goes)
+                    touched += in_[to] != 0;  // an empty box stays empty, whatever lies behind its header
+                if (!goes) continue;
+                expected[node * RAYA_LINKS + link] += std::uint64_t{packets} * words_;
+                arrive(link, node, end);
+            }
+        CHECK(wrong_flags == 0);
+        CHECK(touched == 0);
+        CHECK(words == expected);
+    }
+
+    /// Nodes take some of their inboxes' packets, or none, or all.
+    void take(SplitMix& random, std::uint32_t rareness) {
+        for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) {
+            std::uint32_t& left = inbox(box / nodes_, box % nodes_);
+            left = random_below(random, rareness) == 0 ? random_below(random, left + 1) : left;
+            if (random_below(random, 2)) left = 0;
+            in_[at(box)] = left;
+        }
+        session_.write("test", links_.inboxes(), in_);
+    }
+
+    /// All that was put was seen once and has arrived once, but for what waits in outboxes.
+    void check_totals(bool record) const {
+        std::uint64_t waiting = 0, counted = 0;
+        for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box)
+            waiting += status_.at(box % nodes_, RAYA_STATUS_OUTBOX + box / nodes_);
+        for (const std::uint64_t packets : links_.packets()) counted += packets;
+        CHECK(arrived_.size() + waiting == sources_.size());
+        CHECK(counted == arrived_.size());
+        CHECK(std::all_of(arrived_.begin(), arrived_.end(), [](const auto& a) { return a.second == 1; }));
+        if (!record) return;
+        CHECK(seen_.size() == sources_.size());
+        CHECK(std::all_of(seen_.begin(), seen_.end(), [](const auto& a) { return a.second == 1; }));
+    }
+
+    std::uint64_t arrived() const { return arrived_.size(); }
+    static inline std::uint64_t whole_sides = 0, single_boxes = 0;  // commands of each way of copying
+
+  private:
+    std::uint32_t& outbox(std::uint32_t link, std::uint32_t node) {
+        return status_.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link];
+    }
+    std::uint32_t& inbox(std::uint32_t link, std::uint32_t node) {
+        return status_.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_INBOX + link];
+    }
+    std::size_t at(std::uint32_t box) const { return std::size_t{box} * (1 + capacity_) * words_; }
+
+    // Packets are told apart by their first word; all others follow from it.
+    void put_packet(std::uint32_t link, std::uint32_t node, std::uint32_t slot) {
+        const auto number = static_cast<std::uint32_t>(sources_.size());
+        sources_.push_back(node);
+        for (std::uint32_t w = 0; w < words_; ++w)
+            out_[at(link * nodes_ + node) + (1 + slot) * words_ + w] = number + (w << 24);
+    }
+
+    void arrive(std::uint32_t link, std::uint32_t node, std::uint32_t end) {
+        const std::uint32_t packets = outbox(link, node);
+        const std::size_t from = at(link * nodes_ + node), to = at(link * nodes_ + end);
+        CHECK(in_[to] == packets);
+        CHECK(std::equal(&in_[to] + words_, &in_[to] + (1 + packets) * words_, &out_[from] + words_));
+        for (std::uint32_t i = 1; i <= packets; ++i) ++arrived_[in_[to + i * words_]];
+        inbox(link, end) = packets;
+        outbox(link, node) = 0;
+        out_[from] = 0;
+        std::fill_n(&out_[from] + words_, capacity_ * words_, kPoison);
+    }
+
+    void count_ways() {
+        const std::uint64_t box = (1 + capacity_) * words_ * sizeof(std::uint32_t);
+        for (const CommandRecord& c : session_.profile().commands())
+            if (c.kind == "copy") (c.bytes > box ? whole_sides : single_boxes) += 1;
+    }
+
+    Session& session_;
+    raya_torus torus_;
+    std::uint32_t nodes_, capacity_, words_;
+    LinkExchange links_;
+    NodeStatus status_;
+    std::vector<std::uint32_t> out_, in_;
+    std::vector<std::uint32_t> sources_;           // of each packet: the node that put it
+    std::map<std::uint32_t, int> arrived_, seen_;  // how often each did
+};
+
+}  // namespace
+
+TEST_CASE("links of random toruses carry every packet to its neighbour once", "[torus]") {
+    const std::uint64_t seed = 8472;
+    SplitMix random(seed);
+    Session session(choose_device(""));
+    std::uint64_t arrived = 0;
+    for (int i = 0; i < 150; ++i) {
+        const raya_torus torus = random_torus(random, 5);
+        const std::uint32_t capacity = 1 + random_below(random, 12);
+        const bool record = i % 2;
+        CAPTURE(seed, i, torus_text(torus), capacity, record);
+        Boxes boxes(session, torus, capacity, i % 3 ? RAYA_PACKET_WORDS : RAYA_RETURN_WORDS);
+        const std::uint32_t rareness = i % 5 == 0 ? 20 : 1 + random_below(random, 3);
+        for (int round = 0; round < 6; ++round) {
+            CAPTURE(round);
+            boxes.put(random, rareness, capacity);
+            boxes.exchange(record);
+            boxes.take(random, 1 + random_below(random, 3));
+        }
+        boxes.check_totals(record);
+        arrived += boxes.arrived();
+    }
+    CHECK(arrived > 10'000);
+    CHECK(Boxes::whole_sides > 100);
+    CHECK(Boxes::single_boxes > 100);
+}
+
+TEST_CASE("links have the names of their sides", "[torus]") {
+    const char* const names[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
+    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) CHECK(link_name(link) == names[link]);
+}
+
+}  // namespace raya

@@ -1,0 +1,238 @@
+// Queue and boxes of a node beside its words: tight fits to the byte, and refusals with figures and remedies.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "torus/random_nodes.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+// Spheres of one surface in voxels of the given numbers of objects, one voxel a node, in a row; no lights, no planes.
+NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
+    Scene scene = empty_scene();
+    scene.lights.clear();
+    std::vector<std::set<std::uint32_t>> lists(counts.size());
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        for (std::uint32_t n = 0; n < counts[i]; ++n) {
+            lists[i].insert(static_cast<std::uint32_t>(scene.spheres.size()));
+            scene.spheres.push_back({{0, 0, 0}, 1, 0});
+        }
+    const Divisions divisions = {torus.nodes[0], torus.nodes[1], torus.nodes[2]};
+    return pack_nodes(pack(scene), partition_of(divisions, lists), torus);
+}
+
+// Bytes of such a node: header, one voxel, a surface, and six words a sphere.
+constexpr std::uint64_t bytes_with(std::uint32_t spheres) {
+    return sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS + 24ull * spheres;
+}
+
+// Rays of 64 bytes: the queue, and a quarter of it, 1 at least, in an outbox and an inbox for each link. Returns of 32
+// bytes: as many in an inbox for each link and in the outbox home.
+std::uint64_t packet_bytes(std::uint64_t queue, std::uint64_t links) {
+    const std::uint64_t box = queue < 8 ? 1 : queue / 4;
+    return 64 * (queue + 2 * links * box) + 32 * (links > 0 ? links + 1 : 0) * box;
+}
+
+// A trial of machines whose fullest nodes have that many words over their number of nodes; counts its calls.
+struct EvenTrial {
+    std::uint64_t words = 0;
+    int calls = 0;
+    std::optional<TrialNodes> operator()(const std::array<std::uint32_t, 3>& nodes) {
+        ++calls;
+        return TrialNodes{words / (nodes[0] * nodes[1] * nodes[2]), nodes};
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a node is charged its words, its queue and two boxes a link", "[torus]") {
+    CHECK(node_bytes(100, {8, 2}, 6) == 400 + 64 * (8 + 24) + 32 * 14);
+    CHECK(node_bytes(0, {1, 1}, 0) == 64);
+    CHECK(node_bytes(std::uint64_t{1} << 40, {UINT32_MAX, UINT32_MAX}, 6) ==
+          (std::uint64_t{1} << 42) + 64ull * 13 * UINT32_MAX);
+}
+
+TEST_CASE("links that lead to another node: two for each side of more than one node", "[torus]") {
+    CHECK(links_of_node(make_torus({4, 4, 4}, Links::kTorus3d)) == 6);
+    CHECK(links_of_node(make_torus({4, 4, 4}, Links::kTorus2d)) == 4);
+    CHECK(links_of_node(make_torus({2, 1, 2}, Links::kTorus3d)) == 4);
+    CHECK(links_of_node(make_torus({1, 1, 2}, Links::kTorus2d)) == 2);
+    CHECK(links_of_node(make_torus({1, 1, 1}, Links::kTorus3d)) == 0);
+}
+
+TEST_CASE("without a limit the queue is the one asked for, or the default", "[torus]") {
+    const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
+    const NodeMemories memories = row_of_nodes({3, 4}, torus);
+    const auto plan = [&](std::uint32_t queue, std::uint32_t fewest) {
+        const NodeBuffers buffers = plan_buffers("s", memories, torus, {}, queue, fewest);
+        return std::vector<std::uint32_t>{buffers.queue, buffers.box};
+    };
+    CHECK(plan(0, 5) == std::vector<std::uint32_t>{kDefaultQueue, kDefaultQueue / 4});
+    CHECK(plan(0, 5000) == std::vector<std::uint32_t>{5000, 1250});  // what a hit can ask for, where that is more
+    CHECK(plan(5, 5) == std::vector<std::uint32_t>{5, 1});
+    CHECK(plan(11, 5) == std::vector<std::uint32_t>{11, 2});
+    CHECK(plan(100'000, 5) == std::vector<std::uint32_t>{100'000, 25'000});
+    CHECK(plan(1, 0) == std::vector<std::uint32_t>{1, 1});
+}
+
+TEST_CASE("the queue is the longest that fits, to the byte", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        SplitMix random(seed);
+        const std::array<std::uint32_t, 3> nodes = {1 + random_below(random, 3), 1 + random_below(random, 3), 1};
+        const raya_torus torus = make_torus(nodes, Links::kTorus3d);
+        std::vector<std::uint32_t> counts(nodes[0] * nodes[1]);
+        for (std::uint32_t& count : counts) count = 1 + random_below(random, 50);
+        const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
+        const std::uint32_t fewest = 1 + random_below(random, 40), links = links_of_node(torus);
+        const NodeMemories memories = row_of_nodes(counts, torus);
+        const std::uint32_t queue = fewest + random_below(random, kDefaultQueue - fewest);
+        const std::uint64_t exact = bytes_with(most) + packet_bytes(queue, links);
+        CAPTURE(seed, torus_text(torus), most, fewest, queue);
+        const auto plan = [&](std::uint64_t bytes, std::uint32_t asked) {
+            return plan_buffers("s", memories, torus, bytes, asked, fewest);
+        };
+        REQUIRE(node_bytes(memories.starts.back() - memories.starts[counts.size() - 1], {0, 0}, links) ==
+                bytes_with(counts.back()));
+        CHECK(plan(exact, 0).queue == queue);
+        CHECK(plan(exact, 0).box == (queue < 8 ? 1 : queue / 4));
+        CHECK(plan(exact + 63, 0).queue == queue);
+        CHECK(plan(exact, queue).queue == queue);
+        CHECK_THROWS_AS(plan(exact - 1, queue), UserError);
+        if (queue > fewest) CHECK(plan(exact - 1, 0).queue == queue - 1);
+        if (queue == fewest) CHECK_THROWS_AS(plan(exact - 1, 0), UserError);
+        CHECK(plan(std::uint64_t{1} << 32, 0).queue == kDefaultQueue);
+    }
+}
+
+TEST_CASE("a queue shorter than a hit can ask for is refused with that number", "[torus]") {
+    const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
+    const NodeMemories memories = row_of_nodes({3, 4}, torus);
+    CHECK(refusal_of([&] { plan_buffers("balls.nff", memories, torus, {}, 6, 7); }) ==
+          "balls.nff: --queue 6: a single hit can ask for 7 packets; use --queue 7 or more");
+    CHECK(plan_buffers("balls.nff", memories, torus, {}, 7, 7).queue == 7);
+}
+
+TEST_CASE("what does not fit is refused with figures, the fullest node and the remedy", "[torus]") {
+    const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
+    const NodeMemories memories = row_of_nodes({100, 300, 20, 200}, torus);
+    const std::uint64_t limit = bytes_with(200) + packet_bytes(9, 4);
+    const std::string figures = fmt::format(
+        "s.nff: does not fit: 3 of 4 nodes can hold what they have to, 1 cannot; node 1 (voxel 1, 0, 0 with 300 "
+        "objects) needs {:.1f} KB beside 1.6 KB of buffers, a node has {:.1f} KB; ",
+        std::ceil(bytes_with(300) / 102.4) / 10, std::floor(double(limit) / 102.4) / 10);
+    REQUIRE(packet_bytes(9, 4) == 1600);  // 1.5625 KB
+    const std::uint64_t enough = (bytes_with(300) + 1600 + 1023) / 1024 * 1024;
+    const auto refusal = [&](std::uint32_t queue, const NodeTrial& trial = {}) {
+        return refusal_of([&] { plan_buffers("s.nff", memories, torus, limit, queue, 9, trial); });
+    };
+    CHECK(refusal(0) == figures + fmt::format("use --pe-memory {}", enough));
+    CHECK(plan_buffers("s.nff", memories, torus, enough, 0, 9).queue >= 9);
+
+    // Six links instead of four: four more boxes of two packets, 512 bytes less for the words.
+    EvenTrial trial{8 * (bytes_with(200) - 512) / 4, 0};
+    const auto remedy = [&](const char* nodes) {
+        return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, enough);
+    };
+    CHECK(refusal(0, std::ref(trial)) == remedy("2x2x2"));
+    CHECK(trial.calls == 1);
+    trial = {8 * (bytes_with(200) - 512) / 4 + 8, 0};
+    CHECK(refusal(0, std::ref(trial)) == remedy("4x2x2"));
+    CHECK(trial.calls == 2);
+    trial = {~0ull, 0};
+    CHECK_THAT(refusal(0, std::ref(trial)),
+               Contains("more nodes, up to 65536, would not do; use --pe-memory " + std::to_string(enough)));
+    CHECK(trial.calls == 14);  // 2^3 to 2^16 nodes
+    const NodeTrial none = [](const auto&) { return std::nullopt; };
+    CHECK(refusal(0, none) ==
+          figures + fmt::format("more nodes, up to 65536, would not do; use --pe-memory {}", enough));
+    const NodeTrial cut = [](const auto&) { return TrialNodes{1, {8, 8, 8}}; };
+    CHECK(refusal(0, cut) == remedy("2x2x2 --voxels 8x8x8"));
+}
+
+TEST_CASE("machines whose nodes could not even share the words evenly are not tried", "[torus]") {
+    const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus3d);
+    const NodeMemories memories = row_of_nodes(std::vector<std::uint32_t>(8, 1000), torus);
+    EvenTrial trial{memories.words.size(), 0};
+    const std::uint64_t limit = bytes_with(1000) / 32 + packet_bytes(1, 6);  // what 2^8 nodes can share
+    CHECK_THAT(refusal_of([&] { plan_buffers("s", memories, torus, limit, 0, 1, std::ref(trial)); }),
+               Contains("use --nodes 8x8x4 or"));
+    CHECK(trial.calls == 1);
+}
+
+TEST_CASE("where a shorter queue would do, the refusal names it", "[torus]") {
+    const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
+    const NodeMemories memories = row_of_nodes({100, 300, 20, 200}, torus);
+    const std::uint64_t limit = bytes_with(300) + packet_bytes(100, 4);
+    EvenTrial trial;
+    const std::string message =
+        refusal_of([&] { plan_buffers("s", memories, torus, limit, 1000, 9, std::ref(trial)); });
+    const std::uint64_t enough = (bytes_with(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
+    CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("beside 187.5 KB of buffers") &&
+                            Contains(fmt::format("; use --queue 100 or --pe-memory {}", enough)));
+    CHECK(trial.calls == 0);
+    CHECK(plan_buffers("s", memories, torus, limit, 100, 9).queue == 100);
+    CHECK(plan_buffers("s", memories, torus, enough, 1000, 9).queue == 1000);
+}
+
+TEST_CASE("a refusal tells the voxels of the fullest node by number, or one by its place", "[torus]") {
+    SplitMix random(3);
+    Scene scene = empty_scene();
+    for (int i = 0; i < 40; ++i) add_sphere(scene, random, 1);
+    scene.planes.resize(2);
+    const PackedJob job = pack(scene);
+    std::vector<std::set<std::uint32_t>> lists(24);  // 4 x 3 x 2 voxels
+    lists[3] = {0, 1, 2, 3, 4};
+    lists[19] = {5, 6, 7};  // (3, 1, 1)
+    for (std::uint32_t i = 8; i < 40; ++i) lists[i % 2].insert(i);
+    lists[1].clear();
+    lists[0].clear();
+    const Partition partition = partition_of({4, 3, 2}, lists);
+    const auto refusal = [&](const std::array<std::uint32_t, 3>& nodes) {
+        const raya_torus torus = make_torus(nodes, Links::kTorus3d);
+        const NodeMemories memories = pack_nodes(job, partition, torus);
+        return refusal_of([&] { plan_buffers("s", memories, torus, 100, 0, 1); });
+    };
+    CHECK_THAT(refusal({4, 3, 2}), Contains("0 of 24 nodes") && Contains("node 3 (voxel 3, 0, 0 with 7 objects)"));
+    CHECK_THAT(refusal({2, 3, 2}), Contains("0 of 12 nodes") && Contains("node 1 (2 voxels with 7 objects)"));
+    CHECK_THAT(refusal({1, 1, 1}), Contains("0 of 1 nodes") && Contains("node 0 (24 voxels with 10 objects)"));
+}
+
+TEST_CASE("larger machines that are tried double the shortest side each time, up to 65,536 nodes", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+        SplitMix random(seed);
+        const raya_torus torus = random_torus(random, 8);
+        std::vector<std::uint32_t> counts(raya_nodes(torus), 0);
+        counts[0] = 2000;
+        const NodeMemories memories = row_of_nodes(counts, torus);
+        std::vector<std::array<std::uint32_t, 3>> tried = {{torus.nodes[0], torus.nodes[1], torus.nodes[2]}};
+        const NodeTrial trial = [&](const std::array<std::uint32_t, 3>& nodes) {
+            tried.push_back(nodes);
+            return TrialNodes{~0ull / 8, nodes};
+        };
+        CAPTURE(seed, torus_text(torus));
+        // A byte too few for the fullest node, and more than enough for an even share of the words on more nodes.
+        const std::uint64_t limit = bytes_with(2000) + packet_bytes(1, links_of_node(torus)) - 1;
+        CHECK_THROWS_AS(plan_buffers("s", memories, torus, limit, 0, 1, trial), UserError);
+        for (std::size_t i = 1; i < tried.size(); ++i) {
+            const auto &before = tried[i - 1], &after = tried[i];
+            std::size_t doubled = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                if (after[axis] == before[axis]) continue;
+                ++doubled;
+                CHECK(after[axis] == 2 * before[axis]);
+                CHECK(before[axis] == *std::min_element(before.begin(), before.end()));
+            }
+            CHECK(doubled == 1);
+        }
+        const std::uint32_t last = raya_nodes(make_torus(tried.back(), Links::kTorus3d));
+        CHECK((last <= kMostNodes && 2 * last > kMostNodes));
+    }
+}

@@ -1,0 +1,156 @@
+// Kernels that read a node's memory find what they find in the job's words: the same object, distance, normals, colour.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "kernels/kernel_runner.hpp"
+#include "kernels/probe.hpp"
+#include "torus/random_nodes.hpp"
+
+using namespace raya;
+
+namespace {
+
+constexpr std::size_t kRays = 640;
+
+struct VoxelHits {
+    std::vector<std::uint32_t> objects;  // numbers in the voxel
+    std::vector<float> distances, places;
+};
+
+VoxelHits voxel_hits(KernelRunner& runner, const NodeMemories& memories, std::uint32_t node, std::uint32_t voxel,
+                     const std::vector<float>& rays) {
+    const std::size_t count = rays.size() / 7;
+    const auto words = runner.filled("memories", memories.words);
+    const auto ray_buffer = runner.filled("rays", rays);
+    auto objects = runner.constant<std::uint32_t>("objects", count, 0);
+    auto distances = runner.constant<float>("distances", count, 0);
+    auto places = runner.constant<float>("places", count * 9, 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, cl_uint, Buffer<std::uint32_t>&,
+               Buffer<float>&, Buffer<float>&>("voxel_hits", count, words, ray_buffer, memories.starts[node], voxel,
+                                               objects, distances, places);
+    return {runner.read(objects), runner.read(distances), runner.read(places)};
+}
+
+// A job's objects one to one: patches of three corners alone, which are not cut into triangles.
+Scene uncut(Scene scene) {
+    for (Polygon& polygon : scene.polygons)
+        if (!polygon.normals.empty()) {
+            polygon.vertices.resize(3);
+            polygon.normals.resize(3);
+        }
+    return scene;
+}
+
+// The scene with only the objects of a list, and all planes.
+Scene only(const Scene& scene, const std::set<std::uint32_t>& list) {
+    Scene some = scene;
+    std::uint32_t number = 0;
+    const auto keep = [&](auto& objects, bool all) {
+        auto kept = objects;
+        kept.clear();
+        for (const auto& object : objects)
+            if (all | list.contains(number++)) kept.push_back(object);
+        objects = kept;
+    };
+    keep(some.spheres, false);
+    keep(some.planes, true);
+    keep(some.polygons, false);
+    keep(some.cones, false);
+    return some;
+}
+
+// The numbers in the whole scene of a voxel's objects, by their numbers in the voxel.
+std::vector<std::uint32_t> whole_numbers(NodeReader& node, const raya_voxel_memory& voxel) {
+    const raya_objects& o = voxel.objects;
+    std::vector<std::uint32_t> numbers = node.section(voxel.numbers_at, o.spheres + o.polygons + o.cones);
+    std::vector<std::uint32_t> planes(o.planes);
+    std::iota(planes.begin(), planes.end(), voxel.first_plane);
+    numbers.insert(numbers.begin() + o.spheres, planes.begin(), planes.end());
+    return numbers;
+}
+
+// Rays in which the two find something else than the other one does.
+std::size_t differences(const VoxelHits& own, const VoxelHits& theirs) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < own.objects.size(); ++i) {
+        const bool hit = own.objects[i] != kNoObject;
+        const auto place = [&](const VoxelHits& hits) {
+            return std::vector<float>(hits.places.begin() + 9 * i, hits.places.begin() + 9 * i + 9);
+        };
+        count += own.objects[i] != theirs.objects[i] || own.distances[i] != theirs.distances[i] ||
+                 (hit && bits(place(own)) != bits(place(theirs)));
+    }
+    return count;
+}
+
+// What the kernels find with the job's own words, as one voxel of one node with everything.
+VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector<float>& rays) {
+    const ProbedHits hits = closest_hits(runner, job.words, rays);
+    const ProbedPlaces probed = find_places(runner, job.words, rays);
+    std::vector<float> places;
+    for (std::size_t i = 0; i < hits.objects.size(); ++i)
+        for (const auto which : {ProbedPlaces::kGeometric, ProbedPlaces::kNormal, ProbedPlaces::kColour})
+            for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(probed.vector(i, which)[axis]));
+    return {hits.objects, hits.distances, places};
+}
+
+}  // namespace
+
+TEST_CASE("rays hit in a node's voxels what they hit in a job of the same objects", "[torus]") {
+    std::size_t struck = 0, copies = 0;
+    for (const std::uint32_t lanes : {1u, 16u}) {
+        KernelRunner of_job("probe.cl", {lanes, true}), of_node("../torus/probe.cl", {lanes, true});
+        for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+            SplitMix random(100 * lanes + seed);
+            const Scene scene = uncut(scene_by_lot(random, 4));
+            const PackedJob job = pack(scene);
+            const raya_torus torus = random_torus(random, 3);
+            const Partition partition = partition_by_lot(random, job, random_sides(random, 3), 6);
+            const NodeMemories memories = pack_nodes(job, partition, torus);
+            const std::vector<float> rays = ray_words(random_rays(seed, kRays));
+            const std::uint32_t voxel = random_below(random, raya_voxels(partition.grid));
+            const std::uint32_t number = raya_node_of_voxel(torus, partition.grid, voxel);
+            const std::uint32_t local = raya_local_voxel(torus, partition.grid, voxel);
+            NodeReader node(memories, number);
+            const std::vector<std::uint32_t> numbers = whole_numbers(node, node.voxel(local));
+            CAPTURE(lanes, seed, torus_text(torus), voxel, number, local);
+            REQUIRE(std::is_sorted(numbers.begin(), numbers.end()));
+            const std::set<std::uint32_t> list(numbers.begin(), numbers.end());
+            const VoxelHits expected = job_hits(of_job, pack(only(scene, list)), rays);
+            CHECK(differences(voxel_hits(of_node, memories, number, local, rays), expected) == 0);
+            const VoxelHits planes = job_hits(of_job, pack(only(scene, {})), rays);
+            CHECK(differences(voxel_hits(of_node, memories, number, node.header().voxels, rays), planes) == 0);
+            struck += kRays - std::count(expected.objects.begin(), expected.objects.end(), kNoObject);
+            copies += memories.copies;
+        }
+    }
+    CHECK(struck > 2 * 12 * kRays / 10);
+    CHECK(copies > 50);
+}
+
+TEST_CASE("where every voxel has every object, every voxel's hits are the job's", "[torus]") {
+    KernelRunner of_job("probe.cl", {16, true}), of_node("../torus/probe.cl", {16, true});
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        SplitMix random(seed);
+        const PackedJob job = pack(scene_by_lot(random, 4));  // patches that are cut among them
+        const std::vector<std::uint32_t> finite = finite_objects(job);
+        const std::vector<std::set<std::uint32_t>> lists(12, {finite.begin(), finite.end()});
+        const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus2d);
+        const NodeMemories memories = pack_nodes(job, partition_of({2, 2, 3}, lists), torus);
+        const std::vector<float> rays = ray_words(random_rays(50 + seed, kRays));
+        const VoxelHits expected = job_hits(of_job, job, rays);
+        for (std::uint32_t number = 0; number < 4; ++number) {
+            NodeReader node(memories, number);
+            for (std::uint32_t local = 0; local < node.header().voxels; ++local) {
+                CAPTURE(seed, number, local);
+                VoxelHits own = voxel_hits(of_node, memories, number, local, rays);
+                const std::vector<std::uint32_t> numbers = whole_numbers(node, node.voxel(local));
+                for (std::uint32_t& object : own.objects)
+                    if (object != kNoObject) object = numbers.at(object);
+                CHECK(differences(own, expected) == 0);
+            }
+        }
+    }
+}

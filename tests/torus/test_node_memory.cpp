@@ -1,0 +1,230 @@
+// What the nodes of a torus hold, word by word beside the job, for scenes and lists drawn by lot.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "torus/random_nodes.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+// One node beside the job: every word of an object, and all that it leads to.
+class NodeCheck {
+  public:
+    NodeCheck(const PackedJob& job, NodeReader& node) : job_(job), header_(job_header(job)), node_(node) {}
+
+    Words job_section(std::size_t at, std::size_t count) const {
+        const auto first = job_.words.begin() + static_cast<std::ptrdiff_t>(at);
+        return {first, first + static_cast<std::ptrdiff_t>(count)};
+    }
+
+    // `count` objects of `words` words each from `at` on; `numbers` are those of the job's objects, counted from
+    // `first` at `job_at`.
+    void objects(std::uint32_t at, std::uint32_t words, const Words& numbers, std::uint32_t first,
+                 std::uint32_t job_at) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const std::size_t own_at = at + i * words, theirs_at = job_at + (numbers[i] - first) * words;
+            Words own = node_.section(own_at, words), theirs = job_section(theirs_at, words);
+            surface(own[RAYA_OBJECT_SURFACE_AT], theirs[RAYA_OBJECT_SURFACE_AT]);
+            own[RAYA_OBJECT_SURFACE_AT] = theirs[RAYA_OBJECT_SURFACE_AT];
+            if (words == RAYA_POLYGON_WORDS) outline(own, theirs);
+            if (own != theirs) FAIL("words of object " << numbers[i]);
+        }
+    }
+
+    void surface(std::uint32_t own_at, std::uint32_t job_at) {
+        const auto [entry, is_new] = surfaces_.try_emplace(job_at, own_at);
+        if (entry->second != own_at) FAIL("two copies of the surface at " << job_at);
+        if (is_new && node_.section(own_at, RAYA_SURFACE_WORDS) != job_section(job_at, RAYA_SURFACE_WORDS))
+            FAIL("words of the surface at " << job_at);
+    }
+
+    // One after another behind the header, in the job's order.
+    void surfaces() const {
+        std::uint32_t at = sizeof(raya_node) / 4;
+        for (const auto& [job_at, own_at] : surfaces_) {
+            CHECK(own_at == at);
+            at += RAYA_SURFACE_WORDS;
+        }
+    }
+
+    const raya_job& header() const { return header_; }
+
+  private:
+    // Compares edges and normals, then makes the two "at" words alike.
+    void outline(Words& own, const Words& theirs) {
+        const std::size_t edges = theirs[RAYA_POLYGON_EDGES] * RAYA_EDGE_WORDS;
+        if (node_.section(own[RAYA_POLYGON_EDGES_AT], edges) != job_section(theirs[RAYA_POLYGON_EDGES_AT], edges))
+            FAIL("edges");
+        if ((own[RAYA_POLYGON_NORMALS_AT] == 0) != (theirs[RAYA_POLYGON_NORMALS_AT] == 0)) FAIL("polygon or patch");
+        if (theirs[RAYA_POLYGON_NORMALS_AT] != 0 && node_.section(own[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS) !=
+                                                        job_section(theirs[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS))
+            FAIL("normals");
+        own[RAYA_POLYGON_EDGES_AT] = theirs[RAYA_POLYGON_EDGES_AT];
+        own[RAYA_POLYGON_NORMALS_AT] = theirs[RAYA_POLYGON_NORMALS_AT];
+    }
+
+    const PackedJob& job_;
+    const raya_job header_;
+    NodeReader& node_;
+    std::map<std::uint32_t, std::uint32_t> surfaces_;  // in the job -> in the node
+};
+
+// All but the "at" words.
+void check_header(const raya_node& node, const raya_job& job, const Partition& partition, const raya_torus& torus) {
+    raya_job expected = job;
+    expected.lights_at = node.job.lights_at;
+    expected.objects = {0, job.objects.planes, 0, 0, 0, node.job.objects.planes_at, 0, 0};
+    CHECK(std::memcmp(&node.job, &expected, sizeof expected) == 0);
+    CHECK(std::memcmp(&node.torus, &torus, sizeof torus) == 0);
+    CHECK(std::memcmp(&node.grid, &partition.grid, sizeof node.grid) == 0);
+    CHECK(node.voxels == raya_node_voxels(torus, partition.grid, node.number));
+}
+
+// The numbers of a voxel's list that lie in [first, last).
+Words numbers_between(const Words& list, std::uint32_t first, std::uint32_t last) {
+    Words numbers;
+    std::copy_if(list.begin(), list.end(), std::back_inserter(numbers), [&](auto n) { return first <= n && n < last; });
+    return numbers;
+}
+
+void check_voxel(NodeCheck& check, NodeReader& node, const raya_voxel_memory& voxel, const Words& list) {
+    const raya_objects &own = voxel.objects, all = check.header().objects;
+    const std::uint32_t polygon = all.spheres + all.planes, cone = polygon + all.polygons;
+    const Words spheres = numbers_between(list, 0, all.spheres), polygons = numbers_between(list, polygon, cone);
+    const Words cones = numbers_between(list, cone, cone + all.cones);
+    CHECK(own.spheres == spheres.size());
+    CHECK(own.polygons == polygons.size());
+    CHECK(own.cones == cones.size());
+    CHECK((own.planes == all.planes && own.planes_at == node.header().job.objects.planes_at));
+    CHECK(voxel.first_plane == all.spheres);
+    CHECK(node.section(voxel.numbers_at, list.size()) == list);
+    check.objects(own.spheres_at, RAYA_SPHERE_WORDS, spheres, 0, all.spheres_at);
+    check.objects(own.polygons_at, RAYA_POLYGON_WORDS, polygons, polygon, all.polygons_at);
+    check.objects(own.cones_at, RAYA_CONE_WORDS, cones, cone, all.cones_at);
+}
+
+void check_node(const PackedJob& job, const Partition& partition, const raya_torus& torus, NodeReader& node) {
+    NodeCheck check(job, node);
+    const raya_job& all = check.header();
+    check_header(node.header(), all, partition, torus);
+    const std::size_t lights = all.lights * RAYA_LIGHT_WORDS;
+    CHECK(node.section(node.header().job.lights_at, lights) == check.job_section(all.lights_at, lights));
+    Words planes(all.objects.planes);
+    for (std::uint32_t i = 0; i < planes.size(); ++i) planes[i] = i;
+    check.objects(node.header().job.objects.planes_at, RAYA_PLANE_WORDS, planes, 0, all.objects.planes_at);
+    for (std::uint32_t local = 0; local < node.header().voxels; ++local) {
+        const std::uint32_t voxel = raya_voxel_of_node(torus, partition.grid, node.header().number, local);
+        const auto first = partition.objects.begin() + partition.starts[voxel];
+        check_voxel(check, node, node.voxel(local), {first, partition.objects.begin() + partition.starts[voxel + 1]});
+    }
+    check.surfaces();
+    CHECK(node.words_read(1) == node.size());  // nothing else is there, and no two things are one
+}
+
+// As many as there are in the fullest node, counted from the lists.
+std::uint64_t most_objects(const PackedJob& job, const Partition& p, const raya_torus& torus) {
+    std::vector<std::uint64_t> held(raya_nodes(torus), job_header(job).objects.planes);
+    for (std::uint32_t voxel = 0; voxel < raya_voxels(p.grid); ++voxel)
+        held[raya_node_of_voxel(torus, p.grid, voxel)] += p.starts[voxel + 1] - p.starts[voxel];
+    return *std::max_element(held.begin(), held.end());
+}
+
+}  // namespace
+
+TEST_CASE("nodes hold the objects of their voxels as the job has them, and nothing else", "[torus]") {
+    std::size_t objects = 0, idle = 0, shared = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        SplitMix random(seed);
+        const PackedJob job = pack(scene_by_lot(random, 4));
+        const raya_torus torus = random_torus(random, 4);
+        const Divisions divisions = random_sides(random, 6);
+        const Partition partition = partition_by_lot(random, job, divisions, 8);
+        const NodeMemories memories = pack_nodes(job, partition, torus);
+        CAPTURE(seed, torus_text(torus), sides_text(divisions));
+        REQUIRE(memories.starts.size() == raya_nodes(torus) + 1);
+        REQUIRE(memories.starts.back() == memories.words.size());
+        std::uint64_t most_words = 0;
+        for (std::uint32_t number = 0; number < raya_nodes(torus); ++number) {
+            CAPTURE(number);
+            NodeReader node(memories, number);
+            REQUIRE(node.header().number == number);
+            check_node(job, partition, torus, node);
+            most_words = std::max<std::uint64_t>(most_words, node.size());
+            idle += node.header().voxels == 0;
+            shared += node.header().voxels > 1;
+        }
+        CHECK(fullest_node_words(job, partition, torus) == most_words);
+        CHECK(memories.copies == partition.objects.size() - finite_objects(job).size());
+        CHECK(memories.most_objects == most_objects(job, partition, torus));
+        objects += partition.objects.size();
+    }
+    CHECK(objects > 5000);
+    CHECK(idle > 100);    // nodes without a voxel, and
+    CHECK(shared > 100);  // with several
+}
+
+TEST_CASE("a node has the surfaces of its own objects and of the planes alone", "[torus]") {
+    Scene scene = empty_scene();
+    scene.lights.clear();
+    scene.surfaces.assign(5, {});
+    for (int i = 0; i < 4; ++i) scene.spheres.push_back({{0, 0, 0}, 1, i});
+    const auto words_of = [](const Scene& s) {
+        const PackedJob job = pack(s);
+        const NodeMemories memories =
+            pack_nodes(job, partition_of({2, 1, 1}, {{0, 1, 2}, {3}}), make_torus({2, 1, 1}, Links::kTorus3d));
+        return std::vector<std::size_t>{memories.starts[1], memories.words.size() - memories.starts[1]};
+    };
+    const std::size_t empty = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4;
+    const std::size_t sphere = RAYA_SPHERE_WORDS + 1, surface = RAYA_SURFACE_WORDS;
+    CHECK(words_of(scene) == std::vector<std::size_t>{empty + 3 * (sphere + surface), empty + sphere + surface});
+    scene.spheres[2].surface = 0;
+    CHECK(words_of(scene) == std::vector<std::size_t>{empty + 3 * sphere + 2 * surface, empty + sphere + surface});
+    scene.planes = {{{0, 0, 1}, 0, 4}, {{0, 1, 0}, 0, 3}};
+    CHECK(words_of(scene) == std::vector<std::size_t>{empty + 2 * RAYA_PLANE_WORDS + 3 * sphere + 4 * surface,
+                                                      empty + 2 * RAYA_PLANE_WORDS + sphere + 2 * surface});
+}
+
+TEST_CASE("nodes hold the same on a 2-D torus as on a 3-D one", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        SplitMix random(seed);
+        const PackedJob job = pack(scene_by_lot(random, 3));
+        const auto nodes = random_sides(random, 4);
+        const Partition partition = partition_by_lot(random, job, random_sides(random, 6), 4);
+        const raya_torus flat = make_torus(nodes, Links::kTorus2d), deep = make_torus(nodes, Links::kTorus3d);
+        const NodeMemories on_flat = pack_nodes(job, partition, flat), on_deep = pack_nodes(job, partition, deep);
+        CAPTURE(seed, torus_text(flat));
+        for (std::uint32_t number = 0; number < raya_nodes(flat); ++number) {
+            const raya_place place = raya_node_place(flat, number);
+            NodeReader a(on_flat, number), b(on_deep, raya_node_of(deep, place.at[0], place.at[1], place.at[2]));
+            REQUIRE(a.size() == b.size());
+            const std::size_t header = sizeof(raya_node) / 4, rest = a.size() - header;
+            CHECK(a.section(header, rest) == b.section(header, rest));
+        }
+    }
+}
+
+TEST_CASE("more words than 32-bit numbers reach are refused before they are made", "[torus]") {
+    Scene scene = empty_scene();
+    Polygon disc;  // 100,000 edges, 400,000 words, in each of 4,096 voxels
+    for (int i = 0; i < 100'000; ++i) disc.vertices.emplace_back(std::cos(i * 6.28e-5), std::sin(i * 6.28e-5), 0);
+    scene.polygons.push_back(disc);
+    const PackedJob job = pack(scene);
+    const Partition everywhere = partition_of({16, 16, 16}, std::vector<std::set<std::uint32_t>>(4096, {0}));
+    const raya_torus torus = make_torus({4, 4, 4}, Links::kTorus3d);
+    CHECK(fullest_node_words(job, everywhere, torus) > 64 * 400'000);
+    CHECK_THAT(refusal_of([&] { pack_nodes(job, everywhere, torus); }),
+               Contains("64 nodes of 4096 voxels") && Contains("fewer"));
+}
+
+TEST_CASE("a partition of other voxels than its grid's is a mistake", "[torus]") {
+    const PackedJob job = pack(empty_scene());
+    Partition partition = empty_partition({2, 2, 2});
+    partition.starts.pop_back();
+    CHECK_THROWS_AS(pack_nodes(job, partition, make_torus({2, 2, 2}, Links::kTorus3d)), std::logic_error);
+}

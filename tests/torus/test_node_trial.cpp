@@ -1,0 +1,69 @@
+// Refusals of scenes that are really cut up: the machine that a refusal names does hold the scene.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <regex>
+#include <string>
+
+#include "torus/random_nodes.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+struct Cut {
+    PackedJob job;
+    NumberFormat format;
+
+    NodeBuffers plan(const std::array<std::uint32_t, 3>& nodes, const Divisions& voxels, std::uint64_t memory) const {
+        const raya_torus torus = make_torus(nodes, Links::kTorus3d);
+        const NodeMemories memories = pack_nodes(job, partition(job, format, voxels), torus);
+        return plan_buffers("s", memories, torus, memory, 0, 4, trial_of(job, format, voxels));
+    }
+};
+
+// "16x16x8" behind an option in a message; `otherwise` where it is not there.
+Divisions sides_in(const std::string& message, const std::string& option, const Divisions& otherwise) {
+    std::smatch m;
+    if (!std::regex_search(message, m, std::regex(option + " (\\d+)x(\\d+)x(\\d+)"))) return otherwise;
+    const auto side = [&](int i) { return static_cast<std::uint32_t>(std::stoul(m[i])); };
+    return {side(1), side(2), side(3)};
+}
+
+Scene small_spheres(SplitMix& random, int count) {
+    Scene scene = empty_scene();
+    for (int i = 0; i < count; ++i) scene.spheres.push_back({random_point(random, 2), 0.01, round_surface(random)});
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the machine that a refusal names holds the scene, and so does the memory", "[torus]") {
+    int machines = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        SplitMix random(seed);
+        const Cut cut{pack(small_spheres(random, 1000 + static_cast<int>(random_below(random, 3000)))), {}};
+        const auto nodes = random_sides(random, 3);
+        const Divisions voxels = seed % 2 ? nodes : random_sides(random, 6);
+        const std::uint64_t memory = 3000 + random_below(random, 4000);
+        const std::string message = refusal_of([&] { cut.plan(nodes, voxels, memory); });
+        CAPTURE(seed, sides_text(nodes), sides_text(voxels), memory, message);
+        if (message == "not refused") continue;
+        std::smatch enough;
+        REQUIRE(std::regex_search(message, enough, std::regex("--pe-memory (\\d+)$")));
+        CHECK_NOTHROW(cut.plan(nodes, voxels, std::stoull(enough[1])));
+        if (message.find("--nodes") == std::string::npos) continue;
+        const Divisions larger = sides_in(message, "--nodes", {});
+        CHECK_NOTHROW(cut.plan(larger, sides_in(message, "--voxels", larger), memory));
+        ++machines;
+    }
+    CHECK(machines > 30);
+}
+
+TEST_CASE("where every object is in every voxel no machine is named, and the lists do not grow for it", "[torus]") {
+    SplitMix random(1);
+    const Cut cut{pack(small_spheres(random, 5000)), parse_format("e8m7")};
+    for (const auto& nodes : {std::array<std::uint32_t, 3>{1, 1, 1}, {4, 4, 4}})
+        CHECK_THAT(refusal_of([&] { cut.plan(nodes, nodes, 32768); }),
+                   Contains("more nodes, up to 65536, would not do; use --pe-memory"));
+}

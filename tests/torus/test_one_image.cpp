@@ -1,0 +1,207 @@
+// One image, however the scene is cut up: the torus's is the ring machine's, bit for bit, and so are its counts of
+// rays.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <map>
+
+#include "torus/random_torus.hpp"
+#include "torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+// Random machines for each of the scenes; RAYA_TORUS_CASES sets another number.
+std::uint32_t random_cases() {
+    const char* text = std::getenv("RAYA_TORUS_CASES");
+    return text ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : 16;
+}
+
+constexpr std::uint32_t kMostNodesHere = 100;
+
+// Nodes, voxels, links, injection and queue by lot: what needs no other kernels.
+TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
+    do c.nodes = random_sides(random, 5);
+    while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMostNodesHere);
+    const std::uint32_t how = random_below(random, 4);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        c.voxels[axis] = how == 0   ? c.nodes[axis]
+                         : how == 1 ? 1 + random_below(random, c.nodes[axis])        // fewer
+                         : how == 2 ? c.nodes[axis] * (1 + random_below(random, 3))  // laid out evenly
+                                    : 1 + random_below(random, 9);
+    c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
+    c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
+    const std::uint32_t shortest = raya_shortest_queue(lights_of(scene), c.bounces);
+    const std::uint32_t queues[] = {shortest, shortest + random_below(random, 20), 3 * shortest, 20 * shortest, 0};
+    c.queue = queues[random_below(random, 5)];
+    return c;
+}
+
+// Where the machine stands still, the queue that it says is enough is taken.
+TorusResult render_with_enough(Session& session, const Scene& scene, TorusCase c) {
+    try {
+        return render_torus(session, scene, c);
+    } catch (const UserError& error) {
+        const std::string text = error.what();
+        const std::size_t at = text.find("--queue ");
+        if (text.find("stands still") == std::string::npos || at == std::string::npos) throw;
+        c.queue = static_cast<std::uint32_t>(std::stoul(text.substr(at + 8)));
+        return render_torus(session, scene, c);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every project scene on some machines is the ring's image", "[torus]") {
+    struct Row {
+        std::array<std::uint32_t, 3> nodes;
+        Divisions voxels;
+        Links links;
+        Injection inject;
+    };
+    const Row rows[] = {{{1, 1, 1}, {1, 1, 1}, Links::kTorus3d, Injection::kAll},
+                        {{2, 1, 1}, {2, 1, 1}, Links::kTorus3d, Injection::kRoot},
+                        {{1, 5, 1}, {3, 5, 2}, Links::kTorus2d, Injection::kAll},
+                        {{3, 2, 4}, {3, 2, 4}, Links::kTorus3d, Injection::kAll},
+                        {{3, 2, 4}, {7, 5, 3}, Links::kTorus2d, Injection::kRoot},
+                        {{4, 4, 4}, {4, 4, 4}, Links::kTorus3d, Injection::kAll},
+                        {{4, 4, 4}, {2, 3, 1}, Links::kTorus2d, Injection::kAll},
+                        {{4, 4, 4}, {9, 8, 7}, Links::kTorus2d, Injection::kRoot}};
+    const std::string format = GENERATE("fp32", "spa22");
+    Session session(choose_device(""));
+    int scenes_done = 0;
+    for (const std::string& name : project_scenes()) {
+        ++scenes_done;
+        const Scene scene = project_scene(name);
+        TorusCase c{.width = 24, .height = 20, .lanes = 4, .group = 1, .format = format};
+        const std::string expected = ring_image(scene, c);
+        CHECK_THAT(expected, Catch::Contains("primary 480 "));
+        for (const Row& row : rows) {
+            if (format == "spa22" && (&row - rows + scenes_done) % 2) continue;  // half of them, other ones each time
+            c.nodes = row.nodes;
+            c.voxels = row.voxels;
+            c.links = row.links;
+            c.inject = row.inject;
+            CAPTURE(name, case_text(c));
+            CHECK(one_image(render_torus(session, scene, c)) == expected);
+        }
+    }
+}
+
+TEST_CASE("random scenes on random machines are the ring's images", "[torus]") {
+    const std::uint64_t seed = 6021;
+    const std::string format = GENERATE("fp32", "spa22", "e8m12t", "e5m10", "e5m6");
+    Session session(choose_device(""));
+    SplitMix random(seed);
+    const std::uint32_t scenes = std::max(3u, random_cases() / 4);
+    for (std::uint32_t i = 0; i < scenes; ++i) {
+        const Scene scene = i % 3 == 2 ? far_mirror_scene(seed + i, format) : random_view_scene(seed + i);
+        TorusCase c{
+            .width = 1 + random_below(random, 20), .height = 1 + random_below(random, 16), .lanes = 4, .group = 1};
+        c.format = format;
+        const std::string expected = ring_image(scene, c);
+        for (std::uint32_t k = 0; k < random_cases() / scenes; ++k) {
+            const TorusCase drawn = random_machine(random, scene, c);
+            CAPTURE(seed, i, k, case_text(drawn));
+            CHECK(one_image(render_with_enough(session, scene, drawn)) == expected);
+        }
+    }
+}
+
+TEST_CASE("lanes and group size change no bit of the torus's image", "[torus]") {
+    const Scene scene = random_view_scene(kRichScenes[3]);
+    struct Row {
+        std::uint32_t lanes, group;
+        const char* format;
+    };
+    const Row rows[] = {{1, 1, "spa22"}, {1, 8, "fp32"},  {4, 3, "fp32"},
+                        {8, 1, "fp32"},  {16, 1, "fp32"}, {8, 3, "spa22"}};
+    Session session(choose_device(""));
+    std::map<std::string, std::string> expected;
+    for (const Row& row : rows) {
+        TorusCase c{.lanes = row.lanes, .group = row.group, .format = row.format};
+        if (!expected.contains(row.format)) expected[row.format] = ring_image(scene, c);
+        for (const Injection inject : {Injection::kAll, Injection::kRoot})
+            for (const std::uint32_t queue : {raya_shortest_queue(lights_of(scene), c.bounces), 0u}) {
+                c.inject = inject;
+                c.queue = queue;
+                c.nodes = {3, 2, 2};
+                CAPTURE(case_text(c));
+                CHECK(one_image(render_with_enough(session, scene, c)) == expected[row.format]);
+            }
+    }
+}
+
+TEST_CASE("subsets of the pixels put together are the whole image", "[torus]") {
+    const std::uint64_t seed = 77'001;
+    SplitMix random(seed);
+    Session session(choose_device(""));
+    const Scene scene = random_view_scene(kRichScenes[4]);
+    for (int i = 0; i < 6; ++i) {
+        TorusCase c{
+            .width = 1 + random_below(random, 9), .height = 1 + random_below(random, 9), .lanes = 4, .group = 1};
+        const std::string expected = ring_image(scene, c);
+        c = random_machine(random, scene, c);
+        c.queue = 0;
+        c.pixels.stride = std::array{1u, 2u, 3u, 7u, c.width, c.width + 1}[static_cast<std::size_t>(i)];
+        Image whole{static_cast<int>(c.width), static_cast<int>(c.height),
+                    std::vector<float>(std::size_t{3} * c.width * c.height)};
+        EventCounts events{};
+        for (c.pixels.first = 0; c.pixels.first < c.pixels.stride; ++c.pixels.first) {
+            CAPTURE(seed, i, case_text(c));
+            const TorusResult part = render_torus(session, scene, c);
+            for (std::size_t e = 0; e < events.size(); ++e) events[e] += part.events[e];
+            std::size_t outside = 0;
+            for (std::size_t at = 0; at < whole.rgb.size(); ++at) {
+                const bool own = at / 3 >= c.pixels.first && (at / 3 - c.pixels.first) % c.pixels.stride == 0;
+                if (own) whole.rgb[at] = part.image.rgb[at];
+                outside += !own && part.image.rgb[at] != 0;
+            }
+            CHECK(outside == 0);
+        }
+        CAPTURE(seed, i, case_text(c));
+        CHECK(one_image(whole, events) == expected);
+    }
+}
+
+TEST_CASE("a subset without pixels is a black image", "[torus]") {
+    const Scene scene = random_view_scene(kRichScenes[7]);
+    TorusCase c{.width = 5, .height = 3, .lanes = 4, .group = 1};
+    c.pixels = {20, 15};
+    c.inject = GENERATE(Injection::kAll, Injection::kRoot);
+    const TorusResult none = render_torus(scene, c);
+    CHECK(none.image.rgb == std::vector<float>(45, 0));
+    CHECK(none.made == PacketCounts{});
+    CHECK(none.hops == 0);
+}
+
+TEST_CASE("many nodes have few pixels, and the same image", "[torus]") {
+    const Scene scene = random_view_scene(kRichScenes[5]);
+    Session session(choose_device(""));
+    TorusCase c{.width = 9, .height = 7, .lanes = 4, .group = 1};
+    const std::string expected = ring_image(scene, c);
+    c.nodes = {8, 8, 8};
+    for (const Links links : {Links::kTorus3d, Links::kTorus2d})
+        for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
+            c.links = links;
+            c.inject = inject;
+            CAPTURE(case_text(c));
+            CHECK(one_image(render_torus(session, scene, c)) == expected);
+        }
+}
+
+TEST_CASE("a second render of the same machine is the same in all", "[torus]") {
+    Session session(choose_device(""));
+    TorusRenderer renderer(session, random_view_scene(kRichScenes[6]), settings_of(TorusCase{.lanes = 4, .group = 1}));
+    const TorusResult first = renderer.render(), second = renderer.render();
+    CHECK(one_image(first) == one_image(second));
+    CHECK(first.events == second.events);
+    CHECK(first.made == second.made);
+    CHECK(first.link_words == second.link_words);
+    CHECK(first.link_packets == second.link_packets);
+    CHECK(first.supersteps.size() == second.supersteps.size());
+    CHECK(first.queue_max == second.queue_max);
+    CHECK(first.load.per_pe == second.load.per_pe);
+}
+
+}  // namespace raya

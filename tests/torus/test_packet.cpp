@@ -1,0 +1,120 @@
+// The fields of packets, and the order in which a pixel's contributions are added.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "scene/split_mix.hpp"
+#include "shared/packet.h"
+#include "torus/random_torus.hpp"
+
+using namespace raya;
+
+namespace {
+
+constexpr std::uint32_t kLastLevel = 31;  // after the most bounces
+
+struct Contribution {
+    std::uint32_t path, state;
+    bool operator==(const Contribution&) const = default;
+};
+
+// A ray tree as a tracer walks it by recursion: what a ray adds itself, then all of its reflected ray, then all of its
+// refracted ray. Chains that only reflect or only refract reach the last level often.
+struct RandomTree {
+    SplitMix random;
+    std::uint32_t last_level = kLastLevel, most = 400;  // contributions
+    std::vector<Contribution> contributions{};
+
+    void add(std::uint32_t path, std::uint32_t level, std::uint32_t light) {
+        contributions.push_back({path, raya_state(RAYA_KIND_RETURN, level, light)});
+    }
+
+    void walk(std::uint32_t path, std::uint32_t level) {
+        add(path, level, 0);
+        for (std::uint32_t light = 1; light <= 3; ++light)
+            if (random.next() % 2) add(path, level, light);
+        if (random.next() % 16 == 0) add(path, level, RAYA_MOST_LIGHTS);
+        if (level == last_level || contributions.size() > most) return;
+        const std::uint64_t choice = random.next() % 64;  // both: 14, one of them: 24 each, none: 2
+        if (choice < 38) walk(raya_path_reflected(path), level + 1);
+        if (choice < 14 || (choice >= 38 && choice < 62)) walk(raya_path_refracted(path, level), level + 1);
+    }
+};
+
+std::vector<Contribution> shuffled(std::vector<Contribution> all, SplitMix& random) {
+    for (std::size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random_below(random, i)]);
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("contributions sort into the order of the ray tree, reflected before refracted", "[torus]") {
+    std::uint32_t deepest = 0;
+    std::size_t largest = 0;
+    for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+        SplitMix random(seed);
+        RandomTree tree{random, 1 + random_below(random, kLastLevel)};
+        tree.walk(0, 0);
+        std::vector<Contribution> sorted = shuffled(tree.contributions, random);
+        std::sort(sorted.begin(), sorted.end(), [](const Contribution& a, const Contribution& b) {
+            return raya_comes_before(a.path, a.state, b.path, b.state);
+        });
+        CAPTURE(seed, tree.last_level, sorted.size());
+        CHECK(sorted == tree.contributions);
+        for (const Contribution& c : sorted) deepest = std::max(deepest, raya_state_level(c.state));
+        largest = std::max(largest, sorted.size());
+    }
+    CHECK(deepest == kLastLevel);
+    CHECK(largest > 100);
+}
+
+TEST_CASE("a whole tree of ten levels sorts as well", "[torus]") {
+    struct Whole {
+        std::vector<Contribution> contributions{};
+        void walk(std::uint32_t path, std::uint32_t level) {
+            for (const std::uint32_t light : {0u, 1u})
+                contributions.push_back({path, raya_state(RAYA_KIND_RETURN, level, light)});
+            if (level == 9) return;
+            walk(raya_path_reflected(path), level + 1);
+            walk(raya_path_refracted(path, level), level + 1);
+        }
+    } tree;
+    tree.walk(0, 0);
+    SplitMix random(7);
+    std::vector<Contribution> sorted = shuffled(tree.contributions, random);
+    std::sort(sorted.begin(), sorted.end(), [](const Contribution& a, const Contribution& b) {
+        return raya_comes_before(a.path, a.state, b.path, b.state);
+    });
+    CHECK(sorted.size() == 2046);
+    CHECK(sorted == tree.contributions);
+}
+
+TEST_CASE("the path has a bit for each level, the first level's highest", "[torus]") {
+    std::uint32_t path = 0;
+    for (std::uint32_t level = 0; level < kLastLevel; ++level) {
+        CHECK(raya_path_refracted(0, level) == 1u << (31 - level));
+        CHECK(raya_path_reflected(path) == path);
+        path = raya_path_refracted(path, level);
+    }
+    CHECK(path == 0xfffffffeu);
+}
+
+TEST_CASE("the state of a packet keeps kind, level and light apart, and leaves room for the flags", "[torus]") {
+    const std::uint32_t flags = RAYA_STATE_WIDE | RAYA_STATE_FOUND | RAYA_STATE_FRESH;
+    for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+        SplitMix random(seed);
+        const std::uint32_t kind = random_below(random, RAYA_KINDS), level = random_below(random, kLastLevel + 1);
+        const std::uint32_t light = random_below(random, RAYA_MOST_LIGHTS + 1);
+        const std::uint32_t plain = raya_state(kind, level, light);
+        CAPTURE(seed, kind, level, light);
+        CHECK((plain & flags) == 0);
+        for (const std::uint32_t state : {plain, plain | flags}) {
+            CHECK(raya_state_kind(state) == kind);
+            CHECK(raya_state_level(state) == level);
+            CHECK(raya_state_light(state) == light);
+            CHECK(raya_packet_words(state) == (kind == RAYA_KIND_RETURN ? 8u : 16u));
+        }
+    }
+    CHECK(raya_state_light(raya_state(RAYA_KIND_SHADOW, kLastLevel, RAYA_MOST_LIGHTS)) == RAYA_MOST_LIGHTS);
+}

@@ -1,0 +1,157 @@
+// The trace of packets: rows, and the numbers of rays and parents, against names that are made while a ray tree grows.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "report/gunzip.hpp"
+#include "scene/split_mix.hpp"
+#include "torus/packet_trace.hpp"
+
+namespace raya {
+namespace {
+
+const std::string kHeading = "superstep,source,destination,kind,bytes,ray,parent\n";
+
+/// A packet as it is sent, and who it is in words: "17" is the primary ray of pixel 17, "17RT" the refracted ray of its
+/// reflected ray, "17RT+3" that one's shadow ray to light 3, "17RT+3!" the return packet of it.
+struct Sent {
+    PacketRecord record;
+    std::string kind, name, parent;
+};
+
+class Tree {
+  public:
+    explicit Tree(std::uint64_t seed) : random_(seed) {}
+
+    /// Packets of the ray and of all that follows it, each sent up to three times.
+    void grow(std::uint32_t pixel, std::uint32_t path, std::uint32_t level, const std::string& name,
+              std::uint32_t depth) {
+        const std::string parent = level == 0 ? "" : name.substr(0, name.size() - 1);
+        const std::uint32_t kind = level == 0           ? RAYA_KIND_PRIMARY
+                                   : name.back() == 'R' ? RAYA_KIND_REFLECTED
+                                                        : RAYA_KIND_REFRACTED;
+        send(pixel, path, raya_state(kind, level, 0) | flags(), name, parent, below(4));
+        send(pixel, path, raya_state(RAYA_KIND_RETURN, level, 0), name + "!", name, below(2));
+        for (std::uint32_t light = 1 + below(3); light <= 65'535; light += 1 + below(3) * 30'000) {
+            const std::string shadow = name + "+" + std::to_string(light);
+            send(pixel, path, raya_state(RAYA_KIND_SHADOW, level, light) | flags(), shadow, name, below(3));
+            send(pixel, path, raya_state(RAYA_KIND_RETURN, level, light), shadow + "!", shadow, below(2));
+            if (below(2) == 0) break;
+        }
+        if (level == depth) return;
+        const std::uint32_t which = 1 + below(level < 3 ? 3 : 2);  // both only near the root: 31 levels are deep
+        if (which & 1) grow(pixel, raya_path_reflected(path), level + 1, name + "R", depth);
+        if (which & 2) grow(pixel, raya_path_refracted(path, level), level + 1, name + "T", depth);
+    }
+
+    std::vector<Sent> shuffled() {
+        for (std::size_t i = sent_.size(); i > 1; --i) std::swap(sent_[i - 1], sent_[random_.next() % i]);
+        return std::move(sent_);
+    }
+
+    std::uint32_t below(std::uint32_t limit) { return static_cast<std::uint32_t>(random_.next() % limit); }
+
+  private:
+    // RAYA_STATE_WIDE, _FOUND and _FRESH say how a ray travels, not which it is.
+    std::uint32_t flags() { return below(8) * RAYA_STATE_WIDE; }
+
+    void send(std::uint32_t pixel, std::uint32_t path, std::uint32_t state, const std::string& name,
+              const std::string& parent, std::uint32_t times) {
+        static const char* const kKinds[] = {"", "primary", "reflected", "refracted", "shadow", "return"};
+        for (std::uint32_t i = 0; i < times; ++i) {
+            PacketRecord record = {below(1000), below(65'536), below(65'536), {pixel, state, path}};
+            for (std::size_t word = 3; word < record.head.size(); ++word) record.head[word] = below(1u << 31);
+            sent_.push_back({record, kKinds[raya_state_kind(state)], name, parent});
+        }
+    }
+
+    SplitMix random_;
+    std::vector<Sent> sent_;
+};
+
+// Numbers in the order in which a reader of the table meets the names.
+std::string expected_rows(const std::vector<Sent>& sent) {
+    std::map<std::string, std::size_t> numbers;
+    const auto number = [&](const std::string& name) { return numbers.emplace(name, numbers.size()).first->second; };
+    std::string rows;
+    for (const Sent& s : sent) {
+        rows += fmt::format("{},{},{},{},{},{},", s.record.superstep, s.record.source, s.record.destination, s.kind,
+                            s.kind == "return" ? 32 : 64, number(s.name));
+        if (!s.parent.empty()) rows += std::to_string(number(s.parent));
+        rows += "\n";
+    }
+    return rows;
+}
+
+TEST_CASE("rays and parents of random ray trees have the numbers of their names", "[torus]") {
+    constexpr std::uint64_t kSeed = 2025;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+        CAPTURE(kSeed, i);
+        Tree tree(kSeed + i);
+        const std::uint32_t pixels = 1 + tree.below(5);
+        for (std::uint32_t p = 0; p < pixels; ++p) {
+            const std::uint32_t pixel = p == 0 ? (1u << 28) - 1 : p << 20 | tree.below(1u << 20);
+            tree.grow(pixel, 0, 0, std::to_string(pixel), tree.below(4) == 0 ? 31 : tree.below(8));
+        }
+        const std::vector<Sent> sent = tree.shuffled();
+        PacketTrace trace;
+        for (const Sent& s : sent) trace.add(s.record);
+        CHECK(trace.rows() == sent.size());
+        const bool same = gunzip(trace.finish()) == kHeading + expected_rows(sent);
+        CHECK(same);
+    }
+}
+
+TEST_CASE("a shadow ray's return before anything else, by hand", "[torus]") {
+    PacketTrace trace;
+    const auto row = [&](std::uint32_t kind, std::uint32_t level, std::uint32_t light, std::uint32_t path) {
+        trace.add({3, 1, 2, {9, raya_state(kind, level, light), path}});
+    };
+    row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // of the refracted ray's shadow ray
+    row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // which is 1, and shades 2
+    row(RAYA_KIND_REFRACTED, 1, 0, 1u << 31);  // whose parent is the primary ray, 3
+    row(RAYA_KIND_PRIMARY, 0, 0, 0);
+    row(RAYA_KIND_REFLECTED, 1, 0, 0);
+    CHECK(gunzip(trace.finish()) == kHeading +
+                                        "3,1,2,return,32,0,1\n3,1,2,shadow,64,1,2\n3,1,2,refracted,64,2,3\n"
+                                        "3,1,2,primary,64,3,\n3,1,2,reflected,64,4,3\n");
+}
+
+TEST_CASE("a trace without packets is its heading", "[torus]") {
+    PacketTrace trace;
+    CHECK(trace.rows() == 0);
+    CHECK(gunzip(trace.finish()) == kHeading);
+}
+
+TEST_CASE("a head that no packet has is refused", "[torus]") {
+    const std::uint32_t wrong[] = {raya_state(RAYA_KIND_NONE, 0, 0),      raya_state(RAYA_KINDS, 0, 0),
+                                   raya_state(RAYA_KIND_PRIMARY, 1, 0),   raya_state(RAYA_KIND_PRIMARY, 0, 1),
+                                   raya_state(RAYA_KIND_REFLECTED, 0, 0), raya_state(RAYA_KIND_REFRACTED, 0, 0),
+                                   raya_state(RAYA_KIND_REFLECTED, 1, 2), raya_state(RAYA_KIND_SHADOW, 0, 0)};
+    for (const std::uint32_t state : wrong) {
+        CAPTURE(state);
+        PacketTrace trace;
+        CHECK_THROWS_AS(trace.add({0, 0, 0, {0, state, 0}}), std::logic_error);
+    }
+    CHECK_THROWS_AS(packet_kind_name(RAYA_KINDS), std::logic_error);
+}
+
+// As many rays as a table grows past many times over, asked for again in another order.
+TEST_CASE("a number stays a ray's own while the table grows", "[torus]") {
+    constexpr std::uint32_t kRays = 200'000;
+    RayNumbers numbers;
+    const auto ray = [](std::uint32_t i) { return RayName{i / 8, 1 + i % 4, i % 8 < 4 ? 0 : 1 + i % 65'535}; };
+    for (std::uint32_t i = 0; i < kRays; ++i) REQUIRE(numbers.number_of(ray(i)) == i);
+    for (std::uint32_t i = kRays; i-- > 0;) REQUIRE(numbers.number_of(ray(i)) == i);
+    CHECK(numbers.next() == kRays);
+    CHECK_THROWS_AS(numbers.number_of({0, 0, 0}), std::logic_error);
+    CHECK_THROWS_AS(numbers.number_of({0, 1, 65'536}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,158 @@
+// Short queues: the shortest works where nodes need not wait for each other, one packet less is refused, and a machine
+// that stands still says which queue is long enough.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "torus/random_torus.hpp"
+#include "torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+std::uint32_t shortest_of(const Scene& scene, const TorusCase& c) {
+    return raya_shortest_queue(lights_of(scene), c.bounces);
+}
+
+// Mirrors and glass in a hollow mirror ball that also holds eye and lights, and a pebble in each of two corners far
+// away: of 4 x 4 x 4 voxels one has all rays.
+Scene scene_in_one_voxel(std::uint64_t seed) {
+    SplitMix random(seed);
+    Scene scene = empty_scene();
+    scene.surfaces[1].specular = 0.75;
+    scene.spheres = {{{-2, -2, -2}, 0.01, 0}, {{2, 2, 2}, 0.01, 0}};
+    const Vec3 middle(0.5, 0.5, 0.5);  // of voxel (2, 2, 2), whose side is 1
+    scene.spheres.push_back({middle, -0.45, 1});
+    for (int i = 0; i < 12; ++i)
+        scene.spheres.push_back({middle + random.uniform(0.15, 0.35) * random_direction(random),
+                                 random.uniform(0.02, 0.1), round_surface(random)});
+    scene.view.from = middle;
+    scene.view.at = middle + random_direction(random);
+    scene.view.up = random_direction(random);
+    scene.view.angle_degrees = 100;
+    scene.lights = {{middle + 0.05 * random_direction(random), {}}, {middle + 0.1 * random_direction(random), {}}};
+    return scene;
+}
+
+// The queue that a refusal calls long enough; 0 where it names none.
+std::uint32_t enough_of(const std::string& refusal) {
+    const std::size_t at = refusal.find("--queue ");
+    return at == std::string::npos || refusal.find(" is long enough") == std::string::npos
+               ? 0
+               : static_cast<std::uint32_t>(std::stoul(refusal.substr(at + 8)));
+}
+
+}  // namespace
+
+TEST_CASE("one node works with the shortest queue", "[torus]") {
+    Session session(choose_device(""));
+    for (std::size_t i = 0; i < 6; ++i) {
+        const Scene scene = random_view_scene(kRichScenes[i]);
+        TorusCase c{.nodes = {1, 1, 1}, .voxels = {1, 1, 1}, .lanes = 4, .group = 1};
+        if (i % 2) c.voxels = {3, 2, 4};
+        c.queue = shortest_of(scene, c);
+        CAPTURE(kRichScenes[i], case_text(c));
+        const TorusResult r = render_torus(session, scene, c);
+        CHECK(one_image(r) == ring_image(scene, c));
+        CHECK(r.queue_max <= c.queue);
+        CHECK(r.hops == 0);
+    }
+}
+
+TEST_CASE("the shortest queue holds all that one node's rays can turn into", "[torus]") {
+    Session session(choose_device(""));
+    for (std::uint64_t seed = 1; seed <= 2; ++seed)
+        for (const Links links : {Links::kTorus3d, Links::kTorus2d})
+            for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
+                const Scene scene = scene_in_one_voxel(seed);
+                TorusCase c{.nodes = {4, 4, 4}, .links = links, .inject = inject, .lanes = 4, .group = 1};
+                c.queue = shortest_of(scene, c);
+                CAPTURE(seed, case_text(c));
+                const TorusResult r = render_torus(session, scene, c);
+                CHECK(one_image(r) == ring_image(scene, c));
+                CHECK(r.events[RAYA_PRIMARY_HITS] == c.width * c.height);
+                CHECK(r.events[RAYA_REFLECTED] > 2 * c.width * c.height);
+                const auto& loads = r.load.per_pe;
+                const auto all = std::accumulate(loads.begin(), loads.end(), std::uint64_t{0});
+                CHECK(*std::max_element(loads.begin(), loads.end()) > all / 4 * 3);
+            }
+}
+
+TEST_CASE("a queue of one packet less is refused with the number that it needs", "[torus]") {
+    Session session(choose_device(""));
+    SplitMix random(1);
+    for (int i = 0; i < 20; ++i) {
+        Scene scene = random_view_scene(5);
+        scene.lights.resize(random_below(random, 5), scene.lights[0]);
+        TorusCase c{.lanes = 4, .group = 1, .bounces = random_below(random, 32)};
+        const std::uint32_t shortest = shortest_of(scene, c);
+        c.queue = 1 + random_below(random, shortest - 1);
+        if (i % 2) c.queue = shortest - 1;
+        CAPTURE(i, case_text(c), shortest);
+        const std::string refusal = refusal_of([&] { render_torus(session, scene, c); });
+        CHECK_THAT(refusal, Catch::Contains("--queue") && Catch::Contains(std::to_string(shortest)));
+    }
+}
+
+TEST_CASE("a machine that stands still names a queue that is long enough", "[torus]") {
+    const char* const name = GENERATE("centre", "mirrors");
+    const Scene scene = project_scene(name);
+    Session session(choose_device(""));
+    TorusCase c{.width = 40, .height = 40, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
+    c.format = "spa22";
+    c.queue = shortest_of(scene, c);
+    const std::string expected = ring_image(scene, c);
+    int stood = 0;
+    for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
+        TorusCase short_one = c;
+        short_one.queue += inject == Injection::kRoot ? 3 : 0;
+        short_one.inject = inject;
+        CAPTURE(name, case_text(short_one));
+        TorusRenderer renderer(session, scene, settings_of(short_one));
+        std::string image;
+        const std::string refusal = refusal_of([&] { image = one_image(renderer.render()); });
+        if (refusal == "not refused") CHECK(image == expected);
+        if (refusal == "not refused") continue;
+        ++stood;
+        CHECK_THAT(refusal, Catch::Contains("stands still in superstep") && Catch::Contains("--queue"));
+        const std::uint32_t enough = enough_of(refusal);
+        CHECK(enough > short_one.queue);
+        // The same again: nothing is left over from the first time, nor from looking for a longer queue.
+        CHECK(refusal_of([&] { renderer.render(); }) == refusal);
+        short_one.queue = enough;
+        const TorusResult r = render_torus(session, scene, short_one);
+        CHECK(one_image(r) == expected);
+        CHECK(r.queue_max <= enough);
+        CHECK(r.made == r.ended);
+    }
+    CHECK(stood >= 2);  // else this test says nothing
+}
+
+TEST_CASE("queues of any length give the image or name one that does", "[torus]") {
+    const std::uint64_t seed = 616;
+    SplitMix random(seed);
+    Session session(choose_device(""));
+    int stood = 0;
+    for (std::uint32_t i = 0; i < 10; ++i) {
+        const Scene scene = random_view_scene(kRichScenes[i % 4]);
+        TorusCase c{.width = 24, .height = 20, .lanes = 4, .group = 1};
+        c.nodes = {1 + random_below(random, 5), 1 + random_below(random, 4), 1 + random_below(random, 4)};
+        c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
+        c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
+        c.queue = shortest_of(scene, c) + random_below(random, 8);
+        CAPTURE(seed, i, case_text(c));
+        std::string image;
+        const std::string refusal = refusal_of([&] { image = one_image(render_torus(session, scene, c)); });
+        if (refusal != "not refused") {
+            ++stood;
+            c.queue = enough_of(refusal);
+            REQUIRE(c.queue > 0);
+            image = one_image(render_torus(session, scene, c));
+        }
+        CHECK(image == ring_image(scene, c));
+    }
+    CAPTURE(stood);
+    CHECK(stood < 10);
+}
+
+}  // namespace raya

@@ -1,0 +1,222 @@
+// The torus machine's numbers of nodes and voxels, its links and its ways, on hundreds of machines of any shape.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstdlib>
+#include <set>
+#include <vector>
+
+#include "torus/random_torus.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+namespace {
+
+constexpr std::uint32_t kLinks[] = {0, 1, 2, 3, 4, 5};
+
+bool same(const raya_place& a, const raya_place& b) { return std::equal(a.at, a.at + 3, b.at); }
+
+// Steps from one node to all others, by a search over the links that knows neither sides nor ways.
+std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint32_t from) {
+    std::vector<std::uint32_t> distances(raya_nodes(torus), UINT32_MAX), front = {from};
+    distances[from] = 0;
+    for (std::uint32_t steps = 1; !front.empty(); ++steps) {
+        std::vector<std::uint32_t> next;
+        for (const std::uint32_t node : front)
+            for (const std::uint32_t link : kLinks) {
+                const std::uint32_t end = raya_link_end(torus, node, link);
+                if (distances[end] != UINT32_MAX) continue;
+                distances[end] = steps;
+                next.push_back(end);
+            }
+        front = next;
+    }
+    return distances;
+}
+
+// The links that a packet takes; stops after as many steps as there are nodes.
+std::vector<std::uint32_t> way(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
+    std::vector<std::uint32_t> links;
+    for (std::uint32_t node = from; links.size() <= raya_nodes(torus);) {
+        const std::uint32_t link = raya_next_link(torus, node, to);
+        if (link == RAYA_NO_LINK) return node == to ? links : std::vector<std::uint32_t>{RAYA_NO_LINK};
+        links.push_back(link);
+        node = raya_link_end(torus, node, link);
+    }
+    return links;
+}
+
+// The way that kernels/shared/torus.h describes, found by trying both ways round each side.
+std::vector<std::uint32_t> described_way(const raya_torus& torus, std::uint32_t from, std::uint32_t to) {
+    const raya_place a = raya_torus_place(torus, from), b = raya_torus_place(torus, to);
+    std::vector<std::uint32_t> links;
+    for (std::uint32_t d = 0; d < 3; ++d) {
+        std::uint32_t up = 0, down = 0;
+        while ((a.at[d] + up) % torus.sides[d] != b.at[d]) ++up;
+        while ((b.at[d] + down) % torus.sides[d] != a.at[d]) ++down;
+        links.insert(links.end(), std::min(up, down), up <= down ? 2 * d : 2 * d + 1);
+    }
+    return links;
+}
+
+}  // namespace
+
+TEST_CASE("links and sides are read and written", "[torus]") {
+    CHECK(parse_links("torus3d") == Links::kTorus3d);
+    CHECK(parse_links("torus2d") == Links::kTorus2d);
+    for (const Links links : {Links::kTorus3d, Links::kTorus2d}) CHECK(parse_links(links_name(links)) == links);
+    for (const char* const text : {"", "torus", "torus4d", "Torus3d", "torus3d "}) {
+        CAPTURE(text);
+        const std::string message = refusal_of([&] { parse_links(text); });
+        CHECK_THAT(message, Contains(std::string("--links ") + text));
+        CHECK_THAT(message, Contains("torus3d") && Contains("torus2d"));
+    }
+    CHECK(sides_text({4, 12, 1}) == "4x12x1");
+}
+
+TEST_CASE("a torus has 1 to 65,536 nodes", "[torus]") {
+    for (const Links links : {Links::kTorus3d, Links::kTorus2d}) {
+        CHECK(raya_nodes(make_torus({1, 1, 1}, links)) == 1);
+        CHECK(raya_nodes(make_torus({64, 32, 32}, links)) == 65536);
+        CHECK(raya_nodes(make_torus({1, 1, 65536}, links)) == 65536);
+        for (const auto& nodes : std::vector<std::array<std::uint32_t, 3>>{
+                 {0, 4, 4}, {4, 0, 4}, {4, 4, 0}, {0, 0, 0}, {0, UINT32_MAX, 1}}) {
+            CAPTURE(sides_text(nodes));
+            const std::string message = refusal_of([&] { make_torus(nodes, links); });
+            CHECK_THAT(message, Contains(sides_text(nodes)));
+            CHECK_THAT(message, Contains("1 or more") || Contains("more than 65536 nodes"));
+        }
+        for (const auto& nodes : std::vector<std::array<std::uint32_t, 3>>{
+                 {65537, 1, 1}, {64, 32, 33}, {1u << 31, 1u << 31, 4}, {UINT32_MAX, UINT32_MAX, UINT32_MAX}}) {
+            CAPTURE(sides_text(nodes));
+            CHECK_THAT(refusal_of([&] { make_torus(nodes, links); }), Contains("more than 65536 nodes"));
+        }
+    }
+}
+
+TEST_CASE("4 x 4 x 4 nodes are a torus of 8 x 8 with four slabs of equal k", "[torus]") {
+    const raya_torus torus = make_torus({4, 4, 4}, Links::kTorus2d);
+    CHECK(torus_text(torus) == "4x4x4 on 8x8x1");
+    CHECK(torus.slabs == 2);
+    for (std::uint32_t node = 0; node < 64; ++node) {
+        const std::uint32_t column = node % 8, row = node / 8;
+        const raya_place place = raya_node_place(torus, node);
+        CAPTURE(node);
+        CHECK(place.at[0] == column % 4);
+        CHECK(place.at[1] == row % 4);
+        CHECK(place.at[2] == (column >= 4 ? 1u : 0u) + (row >= 4 ? 2u : 0u));
+    }
+    CHECK(torus_text(make_torus({4, 4, 4}, Links::kTorus3d)) == "4x4x4 on 4x4x4");
+    CHECK(torus_text(make_torus({2, 8, 4}, Links::kTorus2d)) == "2x8x4 on 8x8x1");
+    CHECK(torus_text(make_torus({1, 1, 2}, Links::kTorus2d)) == "1x1x2 on 1x2x1");  // 2 x 1 is no better
+    CHECK(torus_text(make_torus({8, 8, 1}, Links::kTorus2d)) == "8x8x1 on 8x8x1");
+    CHECK(torus_text(make_torus({8, 2, 3}, Links::kTorus2d)) == "8x2x3 on 8x6x1");
+}
+
+TEST_CASE("a 2-D torus has the sides that are most alike", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        SplitMix random(seed);
+        const auto nodes = random_sides(random, 24);
+        const raya_torus torus = make_torus(nodes, Links::kTorus2d);
+        CAPTURE(seed, torus_text(torus), torus.slabs);
+        REQUIRE(torus.sides[2] == 1);
+        REQUIRE(nodes[2] % torus.slabs == 0);
+        REQUIRE(torus.sides[0] == nodes[0] * torus.slabs);
+        REQUIRE(torus.sides[1] == nodes[1] * (nodes[2] / torus.slabs));
+        for (std::uint32_t c = 1; c <= nodes[2]; ++c) {
+            if (nodes[2] % c != 0) continue;
+            const auto ratio = [&](std::uint64_t x, std::uint64_t y) {
+                return double(std::max(x, y)) / double(std::min(x, y));
+            };
+            const double chosen = ratio(torus.sides[0], torus.sides[1]);
+            const double other = ratio(nodes[0] * c, nodes[1] * (nodes[2] / c));
+            CHECK((c < torus.slabs ? chosen < other : chosen <= other));
+        }
+    }
+}
+
+TEST_CASE("every node has one number and one place among the voxels", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        SplitMix random(seed);
+        const raya_torus t = random_torus(random, 9);
+        CAPTURE(seed, torus_text(t));
+        std::set<std::uint32_t> numbers;
+        for (std::uint32_t k = 0; k < t.nodes[2]; ++k)
+            for (std::uint32_t j = 0; j < t.nodes[1]; ++j)
+                for (std::uint32_t i = 0; i < t.nodes[0]; ++i) {
+                    const std::uint32_t node = raya_node_of(t, i, j, k);
+                    if (!numbers.insert(node).second || node >= raya_nodes(t)) FAIL("node " << node);
+                    if (!same(raya_node_place(t, node), {{i, j, k}})) FAIL("place of node " << node);
+                    const raya_place p = raya_torus_place(t, node);
+                    if (raya_node_at(t, p) != node) FAIL("number of node " << node);
+                    for (int d = 0; d < 3; ++d)
+                        if (p.at[d] >= t.sides[d]) FAIL("place of node " << node << " on the torus");
+                }
+        CHECK(numbers.size() == raya_nodes(t));
+    }
+}
+
+TEST_CASE("every voxel has one node and one number there", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        SplitMix random(seed);
+        const raya_torus t = random_torus(random, 5);
+        const auto divisions = random_sides(random, 12);
+        raya_grid g{};
+        std::copy(divisions.begin(), divisions.end(), g.divisions);
+        CAPTURE(seed, torus_text(t), sides_text(divisions));
+        std::vector<std::set<std::uint32_t>> held(raya_nodes(t));
+        for (std::uint32_t voxel = 0; voxel < raya_voxels(g); ++voxel) {
+            const std::uint32_t node = raya_node_of_voxel(t, g, voxel), local = raya_local_voxel(t, g, voxel);
+            if (!held.at(node).insert(local).second) FAIL("two voxels " << local << " in node " << node);
+            if (raya_voxel_of_node(t, g, node, local) != voxel) FAIL("voxel " << voxel);
+            const raya_place v = raya_place_of(voxel, divisions[0], divisions[1]), n = raya_node_place(t, node);
+            if (raya_voxel(g, v.at[0], v.at[1], v.at[2]) != voxel) FAIL("place of voxel " << voxel);
+            for (int d = 0; d < 3; ++d)
+                if (v.at[d] % t.nodes[d] != n.at[d]) FAIL("node of voxel " << voxel);
+        }
+        for (std::uint32_t node = 0; node < raya_nodes(t); ++node) {
+            if (held[node].size() != raya_node_voxels(t, g, node)) FAIL("voxels of node " << node);
+            if (!held[node].empty() && *held[node].rbegin() + 1 != held[node].size()) FAIL("numbers in node " << node);
+        }
+    }
+}
+
+TEST_CASE("a link joins places next to one another, and its opposite leads back", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        SplitMix random(seed);
+        const raya_torus t = random_torus(random, 9);
+        CAPTURE(seed, torus_text(t));
+        for (std::uint32_t node = 0; node < raya_nodes(t); ++node)
+            for (const std::uint32_t link : kLinks) {
+                const std::uint32_t end = raya_link_end(t, node, link), d = link / 2;
+                if (raya_link_end(t, end, link ^ 1u) != node) FAIL("back over link " << link << " of node " << node);
+                raya_place lower = raya_torus_place(t, link % 2 ? end : node);
+                lower.at[d] = (lower.at[d] + 1) % t.sides[d];
+                if (!same(lower, raya_torus_place(t, link % 2 ? node : end)))
+                    FAIL("link " << link << " of node " << node);
+            }
+    }
+}
+
+TEST_CASE("packets arrive over as few links as there are, by the way that is documented", "[torus]") {
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        SplitMix random(seed);
+        const raya_torus t = random_torus(random, 6);
+        CAPTURE(seed, torus_text(t));
+        std::set<std::uint64_t> sums;
+        for (std::uint32_t from = 0; from < raya_nodes(t); ++from) {
+            const std::vector<std::uint32_t> distances = searched_distances(t, from);
+            std::uint64_t sum = 0;
+            for (std::uint32_t to = 0; to < raya_nodes(t); ++to) {
+                const std::vector<std::uint32_t> links = way(t, from, to);
+                if (links.size() != distances[to]) FAIL(links.size() << " links from " << from << " to " << to);
+                if (raya_node_distance(t, from, to) != distances[to]) FAIL("distance from " << from << " to " << to);
+                if (links != described_way(t, from, to)) FAIL("way from " << from << " to " << to);
+                sum += raya_node_distance(t, from, to);
+            }
+            sums.insert(sum);
+        }
+        CHECK(sums.size() == 1);  // a torus looks the same from every node
+    }
+}

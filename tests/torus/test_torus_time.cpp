@@ -1,0 +1,123 @@
+// Modelled times of a torus against times worked out by hand, and the two bounds in their order.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <stdexcept>
+
+#include "scene/split_mix.hpp"
+#include "torus/torus_time.hpp"
+
+namespace raya {
+namespace {
+
+constexpr double kCycleMs = 40e-6, kWordMs = 1 / 425., kBothWaysWordMs = 1 / 300.;  // 1.7 MB/s, 2.4 MB/s for two
+
+TorusResult result_of(const raya_torus& torus) {
+    TorusResult result;
+    const std::size_t nodes = raya_nodes(torus);
+    result.load = load_of(std::vector<std::uint64_t>(nodes));
+    result.link_words.resize(nodes * RAYA_LINKS);
+    result.link_packets.resize(nodes * RAYA_LINKS);
+    return result;
+}
+
+void send(TorusResult& result, std::uint32_t node, std::uint32_t link, std::uint64_t packets, std::uint64_t words) {
+    result.link_packets[node * RAYA_LINKS + link] += packets;
+    result.link_words[node * RAYA_LINKS + link] += packets * words;
+}
+
+Approx about(double value) { return Approx(value).epsilon(1e-12); }
+
+TEST_CASE("a node computes, sends and receives; a message takes both its ends' time", "[torus]") {
+    const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
+    TorusResult result = result_of(torus);
+    result.load = load_of({1'000'000, 2'000'000, 0, 0});
+    send(result, 0, 0, 1000, 16);  // to node 1
+    send(result, 3, 0, 500, 8);    // to node 0, round the end
+    const TorusTime time = torus_time(torus, result);
+    CHECK(time.compute_ms == about(2'000'000 * kCycleMs));
+    CHECK(time.messages_ms == about((1000 * 51 + 500 * 35) * kCycleMs));    // node 0
+    CHECK(time.processor_ms == about((2'000'000 + 1000 * 51) * kCycleMs));  // node 1
+    CHECK(time.links_ms == about(16'000 * kWordMs));
+    CHECK(time.overlapped_ms == time.processor_ms);
+    CHECK(time.stepwise_ms == 0);  // no supersteps here
+}
+
+TEST_CASE("both ways of a link share it, round the end as well", "[torus]") {
+    const raya_torus torus = make_torus({2, 3, 1}, Links::kTorus3d);
+    TorusResult result = result_of(torus);
+    const std::uint32_t from = raya_node_of(torus, 0, 2, 0), to = raya_node_of(torus, 0, 0, 0);
+    send(result, from, 2, 100, 16);  // up along y from the last row to the first
+    send(result, to, 3, 100, 16);    // and down again
+    CHECK(torus_time(torus, result).links_ms == about(1600 * kBothWaysWordMs));
+    send(result, to, 2, 90, 16);  // another link
+    CHECK(torus_time(torus, result).links_ms == about(1600 * kBothWaysWordMs));
+    send(result, from, 2, 100, 16);
+    CHECK(torus_time(torus, result).links_ms == about(1600 * kBothWaysWordMs + 1600 * kWordMs));
+    // Two nodes along x are joined by two links, one each way round: they do not share.
+    TorusResult two = result_of(torus);
+    send(two, 0, 0, 100, 16);
+    send(two, 1, 0, 100, 16);
+    CHECK(torus_time(torus, two).links_ms == about(1600 * kWordMs));
+    send(two, 1, 1, 100, 16);
+    CHECK(torus_time(torus, two).links_ms == about(1600 * kBothWaysWordMs));
+}
+
+TEST_CASE("every superstep waits for its busiest node and its busiest link", "[torus]") {
+    const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus2d);
+    TorusResult result = result_of(torus);
+    result.supersteps = {{1000, 16, 0}, {5000, 0, 0}, {0, 320, 0}};
+    CHECK(torus_time(torus, result).stepwise_ms == about(6000 * kCycleMs + 336 * kBothWaysWordMs));
+}
+
+/// Supersteps of random work and traffic; what the nodes did in all is their sum.
+TorusResult random_render(SplitMix& random, const raya_torus& torus) {
+    TorusResult result = result_of(torus);
+    std::vector<std::uint64_t> cycles(raya_nodes(torus));
+    const auto below = [&](std::uint64_t limit) { return random.next() % limit; };
+    const std::uint64_t work = 1 + below(100'000), traffic = 1 + below(200), idle = 1 + below(4);
+    for (std::uint64_t step = 1 + below(20); step-- > 0;) {
+        Superstep counted;
+        for (std::uint32_t node = 0; node < cycles.size(); ++node) {
+            const std::uint64_t cost = below(idle) == 0 ? below(work) : 0;
+            cycles[node] += cost;
+            counted.most_cycles = std::max(counted.most_cycles, cost);
+            for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
+                if (raya_link_end(torus, node, link) == node) continue;
+                const std::uint64_t rays = below(traffic), returns = below(traffic);
+                send(result, node, link, rays, RAYA_PACKET_WORDS);
+                send(result, node, link, returns, RAYA_RETURN_WORDS);
+                counted.most_link_words =
+                    std::max(counted.most_link_words, rays * RAYA_PACKET_WORDS + returns * RAYA_RETURN_WORDS);
+            }
+        }
+        result.supersteps.push_back(counted);
+    }
+    result.load = load_of(std::move(cycles));
+    return result;
+}
+
+TEST_CASE("no render is faster than its bound from below, and none slower than step by step", "[torus]") {
+    constexpr std::uint64_t kSeed = 77;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 500; ++i) {
+        CAPTURE(kSeed, i);
+        const auto side = [&] { return static_cast<std::uint32_t>(1 + random.next() % 4); };
+        const raya_torus torus =
+            make_torus({side(), side(), side()}, random.next() % 2 ? Links::kTorus2d : Links::kTorus3d);
+        const TorusTime time = torus_time(torus, random_render(random, torus));
+        CHECK(time.compute_ms <= time.processor_ms);
+        CHECK(time.messages_ms <= time.processor_ms);
+        CHECK(time.processor_ms <= (time.compute_ms + time.messages_ms) * (1 + 1e-12));
+        CHECK(time.overlapped_ms == std::max(time.processor_ms, time.links_ms));
+        CHECK(time.overlapped_ms <= time.stepwise_ms * (1 + 1e-12));
+    }
+}
+
+TEST_CASE("a result of another torus is a mistake", "[torus]") {
+    const TorusResult result = result_of(make_torus({2, 2, 2}, Links::kTorus3d));
+    CHECK_THROWS_AS(torus_time(make_torus({2, 2, 3}, Links::kTorus3d), result), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace raya

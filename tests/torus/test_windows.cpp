@@ -1,0 +1,174 @@
+// Windows of pixels: each holds all whose rays enter the node's voxels, and few others.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "torus/random_nodes.hpp"
+#include "torus/windows.hpp"
+
+namespace raya {
+namespace {
+
+struct Camera {
+    raya_job job;
+    NumberFormat format;
+};
+
+double rounded(double value, const NumberFormat& format) {
+    return format.is_fp32() ? static_cast<double>(static_cast<float>(value)) : round_to_format(value, format);
+}
+
+Vec3 vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+// The ray through a place on the image, each operation rounded to the format as the kernels' are (shading/camera.clh).
+Vec3 direction_of(const Camera& c, double row, double column) {
+    const auto in = [&](double value) { return rounded(value, c.format); };
+    Vec3 d;
+    for (int axis = 0; axis < 3; ++axis)
+        d[axis] = in(c.job.column_step[axis] * column + in(c.job.row_step[axis] * row + c.job.corner[axis]));
+    const double square = in(d.z * d.z + in(d.y * d.y + in(d.x * d.x)));
+    const double inverse = in(1 / in(std::sqrt(square)));
+    return {in(d.x * inverse), in(d.y * inverse), in(d.z * inverse)};
+}
+
+// Whether a ray meets a voxel, both in exact numbers as far as double goes.
+bool meets(const raya_grid& grid, const raya_place& at, const Vec3& origin, const Vec3& direction) {
+    double in = 0, out = std::numeric_limits<double>::infinity();
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const double o = origin[static_cast<int>(axis)], d = direction[static_cast<int>(axis)];
+        const double low = raya_voxel_plane(grid, axis, at.at[axis]) - o;
+        const double high = raya_voxel_plane(grid, axis, at.at[axis] + 1) - o;
+        if (d == 0 && (low > 0 || high < 0)) return false;
+        if (d == 0) continue;
+        in = std::max(in, std::min(low / d, high / d));
+        out = std::min(out, std::max(low / d, high / d));
+    }
+    return in <= out;
+}
+
+// Rows from, to, columns from, to, of the places whose rays meet a node's voxels; `fine` places to a pixel.
+struct Met {
+    double low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
+    bool any() const { return low[0] <= high[0]; }
+};
+
+Met met_by(const Camera& c, const raya_grid& grid, const raya_torus& torus, std::uint32_t node, int fine) {
+    Met met;
+    const Vec3 eye = vector_of(c.job.eye);
+    const int rows = static_cast<int>(c.job.mapping.height), columns = static_cast<int>(c.job.mapping.width);
+    for (int row = 0; row < rows * fine; ++row)
+        for (int column = 0; column < columns * fine; ++column) {
+            const double place[2] = {static_cast<double>(row) / fine, static_cast<double>(column) / fine};
+            const Vec3 d = direction_of(c, place[0], place[1]);
+            bool hit = false;
+            for (std::uint32_t i = 0; i < raya_node_voxels(torus, grid, node) && !hit; ++i) {
+                const std::uint32_t voxel = raya_voxel_of_node(torus, grid, node, i);
+                hit = meets(grid, raya_place_of(voxel, grid.divisions[0], grid.divisions[1]), eye, d);
+            }
+            for (int i = 0; i < 2 && hit; ++i) {
+                met.low[i] = std::min(met.low[i], place[i]);
+                met.high[i] = std::max(met.high[i], place[i]);
+            }
+        }
+    return met;
+}
+
+raya_grid random_grid(SplitMix& random, const Divisions& divisions) {
+    raya_grid grid{};
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        grid.low[axis] = static_cast<float>(random.uniform(-3, 1));
+        grid.cell[axis] = static_cast<float>(random.uniform(0.2, 4) / divisions[axis]);
+        grid.divisions[axis] = divisions[axis];
+    }
+    return grid;
+}
+
+Vec3 middle_of(const raya_grid& grid) {
+    Vec3 middle;
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = grid.low[axis] + 0.5 * grid.cell[axis] * grid.divisions[axis];
+    return middle;
+}
+
+// An eye so far from the middle of the box, which is inside it for short distances.
+Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat& format, double away, double angle) {
+    Scene scene = empty_scene();
+    scene.view.from = middle_of(grid) + away * random_direction(random);
+    scene.view.at = middle_of(grid) + random_point(random, 0.4);
+    scene.view.up = random_direction(random);
+    scene.view.angle_degrees = angle;
+    JobSettings settings;
+    settings.mapping = {1 + random_below(random, 40), 1 + random_below(random, 30), 1, 0, RAYA_FOLD_CYCLIC};
+    settings.sampling = random.next() % 2 ? Sampling::kCentres : Sampling::kCorners;
+    settings.format = format;
+    return {job_header(pack_job(scene, settings)), format};
+}
+
+}  // namespace
+
+TEST_CASE("a node's window holds every pixel whose ray meets its voxels", "[torus]") {
+    const std::uint64_t seed = 9183;
+    SplitMix random(seed);
+    std::size_t met = 0, partial = 0;
+    for (int i = 0; i < 400; ++i) {
+        const NumberFormat format = parse_format(std::array{"fp32", "spa22", "e8m12t", "e5m10", "e5m6"}[i % 5u]);
+        const raya_torus torus = random_torus(random, 3);
+        const raya_grid grid = random_grid(
+            random, {1 + random_below(random, 5), 1 + random_below(random, 5), 1 + random_below(random, 5)});
+        const double away = std::array{0.0, 0.3, 2.0, 8.0, 30.0, 300.0, 3000.0, 10000.0}[random_below(random, 8)];
+        // From far away pixels are as small as the last bits of a direction.
+        const double angle = away < 50 ? random.uniform(10, 150) : random.uniform(50, 300) / away;
+        const Camera camera = random_camera(random, grid, format, away, angle);
+        const auto windows = pixel_windows(camera.job, grid, torus, format);
+        REQUIRE(windows.size() == raya_nodes(torus));
+        for (std::uint32_t node = 0; node < windows.size(); ++node) {
+            const PixelWindow& w = windows[node];
+            CAPTURE(seed, i, torus_text(torus), node, away, w.rows[0], w.rows[1], w.columns[0], w.columns[1]);
+            const bool empty = w.rows[0] >= w.rows[1] || w.columns[0] >= w.columns[1];
+            CHECK((raya_node_voxels(torus, grid, node) > 0 || empty));
+            CHECK(w.rows[1] <= camera.job.mapping.height);
+            CHECK(w.columns[1] <= camera.job.mapping.width);
+            const Met m = met_by(camera, grid, torus, node, 1);
+            if (!m.any()) continue;
+            ++met;
+            partial += w.rows[1] - w.rows[0] < camera.job.mapping.height;
+            CHECK(m.low[0] >= w.rows[0]);
+            CHECK(m.high[0] < w.rows[1]);
+            CHECK(m.low[1] >= w.columns[0]);
+            CHECK(m.high[1] < w.columns[1]);
+        }
+    }
+    CHECK(met > 1000);
+    CHECK(partial > 200);
+}
+
+TEST_CASE("the window of voxels before the eye is little larger than what they cover", "[torus]") {
+    const std::uint64_t seed = 77;
+    SplitMix random(seed);
+    const raya_torus torus = make_torus({3, 3, 3}, Links::kTorus3d);
+    int whole = 0;
+    for (int i = 0; i < 40; ++i) {
+        const raya_grid grid = random_grid(random, {3, 3, 3});
+        Camera camera = random_camera(random, grid, parse_format("fp32"), 12, random.uniform(20, 60));
+        const auto windows = pixel_windows(camera.job, grid, torus, camera.format);
+        for (std::uint32_t node = 0; node < windows.size(); ++node) {
+            const PixelWindow& w = windows[node];
+            const Met m = met_by(camera, grid, torus, node, 4);
+            CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], m.low[0], m.high[0], m.low[1],
+                    m.high[1]);
+            // What the image cuts off may reach farther along its edge.
+            const bool cut = m.low[0] <= 0 || m.low[1] <= 0 || m.high[0] > camera.job.mapping.height - 1.5 ||
+                             m.high[1] > camera.job.mapping.width - 1.5;
+            if (!m.any() || cut) continue;
+            ++whole;
+            CHECK(w.rows[0] + 4 >= m.low[0]);
+            CHECK(w.rows[1] <= m.high[0] + 5);
+            CHECK(w.columns[0] + 4 >= m.low[1]);
+            CHECK(w.columns[1] <= m.high[1] + 5);
+        }
+    }
+    CHECK(whole > 100);
+}
+
+}  // namespace raya
