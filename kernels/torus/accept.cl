@@ -22,7 +22,7 @@ static inline uint empty_inbox(__global uint* inbox, __global uint* queue, uint 
         const int fits = used + taken + item + 1 + room <= capacity;
         const uint goal = slot >= waiting ? RAYA_NOTHING : fits ? RAYA_TAKEN : RAYA_LEFT_THERE;
         goals[item] = goal;
-        node_barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+        node_barrier();
         const uint rank = rank_among(goals, goal);
         // What stays moves to a slot that this loop has read already.
         if (goal == RAYA_LEFT_THERE) put_packet(packet, inbox, 1 + *left + rank);
@@ -30,7 +30,7 @@ static inline uint empty_inbox(__global uint* inbox, __global uint* queue, uint 
         if (goal == RAYA_TAKEN) put_packet(packet, queue, used + taken + rank);
         taken += number_of(goals, RAYA_TAKEN);
         *left += number_of(goals, RAYA_LEFT_THERE);
-        node_barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+        node_barrier();
     }
     return taken;
 }
@@ -47,9 +47,9 @@ static inline uint pass_returns(__global uint* inbox, __global uint* to, uint us
     for (uint first = 0; moves > 0 && first < *left; first += RAYA_GROUP) {
         const uint i = first + item;
         const uint8 packet = vload8(1 + moves + min(i, *left - 1), inbox);
-        node_barrier(CLK_GLOBAL_MEM_FENCE);
+        node_barrier();
         if (i < *left) vstore8(packet, 1 + i, inbox);
-        node_barrier(CLK_GLOBAL_MEM_FENCE);
+        node_barrier();
     }
     return moves;
 }
@@ -90,7 +90,7 @@ void accept(const raya_torus torus,
         uint left, returns_left;
         used += empty_inbox(inbox, queue, used, capacity, new_packets, tight, goals, &left);
         home_used += pass_returns(return_inbox, root ? home_box : home_box + RAYA_RETURN_WORDS, home_used, root ? host_capacity : box, &returns_left);
-        node_barrier(CLK_GLOBAL_MEM_FENCE);
+        node_barrier();
         if (item) continue;
         inbox[0] = left;
         return_inbox[0] = returns_left;

@@ -137,7 +137,7 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
         const primaries p = make_primaries(n, row, first, stride);
         own[item] = lanes_in(p.own);
         if (item == 0) *next = end;
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
         uint behind = 0, all = 0;
         for (uint i = 0; i < RAYA_GROUP; ++i) {
             if (i < item) behind += own[i];
@@ -145,10 +145,10 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
         }
         const uint waits = put_primaries(&p, queue, shared, behind, room, first, end);
         if (waits < end) atomic_min(next, waits);
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
         at = *next;
         if (item == 0) shared[RAYA_SHARED_USED] += min(all, room);
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
     }
     return at;
 }
@@ -183,7 +183,7 @@ void inject(__global const uint* restrict memories,  // as for trace_voxel, and 
         at = 0;
         ++i;
     }
-    node_barrier(CLK_LOCAL_MEM_FENCE);
+    node_barrier();
     if (item == 0) {
         status[RAYA_STATUS_NEXT_ROW] = i;
         status[RAYA_STATUS_NEXT_COLUMN] = at;

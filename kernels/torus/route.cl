@@ -45,6 +45,7 @@ void route(__global const uint* restrict memories,  // as for trace_voxel
     __local uint *used = local_words, *limit = used + RAYA_GOALS, *goals = limit + RAYA_GOALS, *moved = goals + RAYA_GROUP;
     status += (size_t)number * RAYA_STATUS_WORDS;
     __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
+    const uint count = status[RAYA_STATUS_QUEUE];
     const node n = open_node(memories + starts[number], starts[number + 1] - starts[number], local_words + 2 * RAYA_GOALS + RAYA_GROUP + 1);
     const int root = number == RAYA_ROOT;
     const uint home = raya_home_link(n.torus, number), home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
@@ -58,25 +59,24 @@ void route(__global const uint* restrict memories,  // as for trace_voxel
         limit[RAYA_HOME] = root ? host_capacity : box;
         used[RAYA_STAYS] = used[RAYA_GONE] = *moved = 0;
     }
-    node_barrier(CLK_LOCAL_MEM_FENCE);
-    const uint count = status[RAYA_STATUS_QUEUE];
+    node_barrier();
     for (uint first = 0; first < count; first += RAYA_GROUP) {
         const uint slot = first + item;
         const uint16 packet = packet_at(queue, min(slot, count - 1));
         uint goal = slot < count ? goal_of(&n, packet) : RAYA_GONE;
         goals[item] = goal;
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
         const int fits = goal >= RAYA_STAYS || used[goal] + rank_among(goals, goal) < limit[goal];
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
         if (!fits) goal = RAYA_STAYS;
         goals[item] = goal;
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
         const uint place = goal < RAYA_GONE ? used[goal] + rank_among(goals, goal) : 0;
         // Packets that stay move to a slot that this loop has read already.
         if (goal == RAYA_STAYS) put_packet(packet, queue, place);
         if (goal == RAYA_HOME) vstore8(packet.lo, place + !root, home_box);  // behind a box's header
         if (goal < RAYA_LINKS) put_packet(packet, outboxes + raya_box_at(goal, nodes, number, box, RAYA_PACKET_WORDS), 1 + place);
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
         if (item == 0) {
             for (uint g = 0; g < RAYA_GONE; ++g) {
                 const uint here = number_of(goals, g);
@@ -84,7 +84,7 @@ void route(__global const uint* restrict memories,  // as for trace_voxel
                 *moved += g < RAYA_STAYS ? here : 0;
             }
         }
-        node_barrier(CLK_LOCAL_MEM_FENCE);
+        node_barrier();
     }
     if (item) return;
     for (uint link = 0; link < RAYA_LINKS; ++link) {

@@ -145,7 +145,7 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
         const uint end = count - taken;
         treat_slots(&n, queue, shared, end > RAYA_LANES ? end - RAYA_LANES : 0, end, capacity, tight);
     }
-    node_barrier(CLK_LOCAL_MEM_FENCE);
+    node_barrier();
     if (item == 0)
         report_counts(n.memory, shared, status, events + (size_t)number * RAYA_EVENTS, made + (size_t)number * RAYA_KINDS, ended + (size_t)number * RAYA_KINDS);
 }

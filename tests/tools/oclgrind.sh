@@ -84,4 +84,8 @@ for options in "${exchanges[@]}"; do
     method=$(sed -E 's/--(pes|offset|group|lanes|fold) [a-z0-9]+//g' <<<"$options")
     check_run "${scenes[0]}" "$options" "$method --machine grande --format spa22 --pes 1"
 done
-echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange: nothing to report, the same images"
+# Nodes with several work-items, rays that wait for room, both ways of making primary rays.
+size=6
+check_run cones "--machine torus --nodes 2x2x1 --lanes 4 --group 3 --queue 200" "--machine grande"
+check_run planes "--machine torus --nodes 2x1x2 --lanes 1 --group 4 --inject root --links torus2d" "--machine grande"
+echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, 2 of the torus: nothing to report, the same images"
