@@ -50,16 +50,13 @@ void Session::check_range(const std::string& label, const std::string& buffer, s
 
 void Session::check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
                            std::size_t count, std::size_t blocks, std::size_t slabs) {
-    if (count == 0 || blocks == 0 || slabs == 0) return;
-    // Blocks and slabs lie one behind the other.
-    const bool apart =
-        (blocks == 1 || count <= at.pitch) && (slabs == 1 || (blocks - 1) * at.pitch + count <= at.slab_pitch);
-    const std::size_t last = (slabs - 1) * at.slab_pitch + (blocks - 1) * at.pitch + count;
-    if (!apart || at.offset > size || last > size - at.offset) {
+    check_range(label, buffer, at.pitch, at.offset, count);
+    const bool slabs_apart = slabs <= 1 || (at.pitch > 0 && blocks <= at.slab_pitch / at.pitch);
+    const std::size_t before = at.first + (slabs > 0 ? slabs - 1 : 0) * at.slab_pitch;
+    if (!slabs_apart || before > size || (at.pitch > 0 && blocks > (size - before) / at.pitch)) {
         throw std::out_of_range(fmt::format(
-            "'{}': {} elements from {} on of each of {} blocks {} apart, in {} slabs {} apart, do not lie in "
-            "buffer '{}' of {}",
-            label, count, at.offset, blocks, at.pitch, slabs, at.slab_pitch, buffer, size));
+            "'{}': {} slabs, {} apart, of {} blocks of {} elements from {} on do not lie in buffer '{}' of {}", label,
+            slabs, at.slab_pitch, blocks, at.pitch, at.first, buffer, size));
     }
 }
 

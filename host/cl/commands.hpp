@@ -74,10 +74,10 @@ class Session {
                    {to.memory(), to.name(), to_offset * sizeof(T)}, count * sizeof(T));
     }
 
-    /// Where the blocks of a buffer lie: `pitch` elements from one to the next, the first range at element `offset`;
-    /// `slab_pitch` elements from one slab of blocks to the next.
+    /// Where the blocks of a buffer lie: the first at element `first`, `pitch` elements from one to the next; a range
+    /// starts at element `offset` of each. `slab_pitch` elements from one slab of blocks to the next.
     struct Blocks {
-        std::size_t offset = 0, pitch = 0, slab_pitch = 0;
+        std::size_t offset = 0, pitch = 0, slab_pitch = 0, first = 0;
     };
 
     /// Device to device, between different buffers: `count` elements of each of `blocks` blocks in each of `slabs`
@@ -87,9 +87,9 @@ class Session {
                      std::size_t count, std::size_t blocks, std::size_t slabs = 1) {
         check_blocks(label, from.name(), from.size(), from_at, count, blocks, slabs);
         check_blocks(label, to.name(), to.size(), to_at, count, blocks, slabs);
-        copy_rows(label, {from.memory(), from.name(), from_at.offset * sizeof(T)}, in_bytes(from_at, sizeof(T)),
-                  {to.memory(), to.name(), to_at.offset * sizeof(T)}, in_bytes(to_at, sizeof(T)),
-                  {count * sizeof(T), blocks, slabs});
+        copy_rows(label, {from.memory(), from.name(), (from_at.first + from_at.offset) * sizeof(T)},
+                  in_bytes(from_at, sizeof(T)), {to.memory(), to.name(), (to_at.first + to_at.offset) * sizeof(T)},
+                  in_bytes(to_at, sizeof(T)), {count * sizeof(T), blocks, slabs});
     }
 
     /// Sets every element of `to` to `value`. Does not wait.
@@ -126,7 +126,7 @@ class Session {
         std::size_t bytes, rows, slabs;
     };
     static Blocks in_bytes(const Blocks& b, std::size_t size) {
-        return {b.offset * size, b.pitch * size, b.slab_pitch * size};
+        return {b.offset * size, b.pitch * size, b.slab_pitch * size, b.first * size};
     }
     static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
                              std::size_t count, std::size_t blocks, std::size_t slabs);

@@ -89,9 +89,9 @@ void LinkExchange::copy_side(const std::string& label, std::uint32_t link, std::
     const std::size_t slabs = nodes_ / (stride * side), slab = stride * side * box;
     const std::size_t low = first, second = first + stride * box, last = first + stride * (side - 1) * box;
     const bool up = link % 2 == 0;
-    session_.copy_blocks(label, outboxes_, {up ? low : second, box, slab}, inboxes_, {up ? second : low, box, slab},
-                         box_words(packets), stride * (side - 1), slabs);
-    session_.copy_blocks(label, outboxes_, {up ? last : low, box, slab}, inboxes_, {up ? low : last, box, slab},
+    session_.copy_blocks(label, outboxes_, {0, box, slab, up ? low : second}, inboxes_,
+                         {0, box, slab, up ? second : low}, box_words(packets), stride * (side - 1), slabs);
+    session_.copy_blocks(label, outboxes_, {0, box, slab, up ? last : low}, inboxes_, {0, box, slab, up ? low : last},
                          box_words(packets), stride, slabs);
 }
 

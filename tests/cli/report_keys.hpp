@@ -70,6 +70,7 @@ inline std::set<std::string> fixed_keys() {
                                   "shading.hits count",
                                   "shading.lit count",
                                   "shading.highlights count",
+                                  "accel.kind string",
                                   "antialias.method string",
                                   "communication.broadcasts count",
                                   "communication.broadcast_words count",
