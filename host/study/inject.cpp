@@ -36,7 +36,8 @@ std::vector<Row> rows_of(Session& session, const LabelledScene& scene, std::uint
     return rows;
 }
 
-double root_share(const TorusRun& run) { return 100 * run.root_ms() / run.time.overlapped_ms; }
+// 100 where they are one.
+double root_share(const TorusRun& run) { return 100 * (run.root_ms() / run.time.overlapped_ms); }
 
 bool waits_for_root(const TorusRun& run) { return run.root_ms() >= run.time.overlapped_ms; }
 
@@ -103,7 +104,8 @@ std::string bound_text(const std::vector<Row>& rows, int way) {
 
 std::string finding_of_root(const std::vector<Row>& rows) {
     return fmt::format(
-        "The whole machine waits for its root, overlapped: where the root makes all primary rays {}, where all nodes "
+        "The whole machine waits for its root, overlapped: where the root makes all primary rays {}, where all "
+        "nodes "
         "do {}.",
         bound_text(rows, kRoot), bound_text(rows, kAll));
 }
@@ -119,7 +121,8 @@ std::string finding_of_limit(const std::vector<Row>& rows) {
     const Row &root = fastest(rows, kRoot), &all = fastest(rows, kAll);
     const double one = rows.front().of[kAll].time.overlapped_ms;
     return fmt::format(
-        "Injection by the root ends at {:.0f} ms on {} nodes, {:.1f} times as fast as one node; by all nodes at {:.0f} "
+        "Injection by the root ends at {:.0f} ms on {} nodes, {:.1f} times as fast as one node; by all nodes at "
+        "{:.0f} "
         "ms on {}, {:.1f} times.",
         root.of[kRoot].time.overlapped_ms, root.nodes, one / root.of[kRoot].time.overlapped_ms,
         all.of[kAll].time.overlapped_ms, all.nodes, one / all.of[kAll].time.overlapped_ms);
@@ -138,7 +141,8 @@ std::string finding_of_parting(const std::vector<Row>& rows) {
 std::string finding_of_supersteps(const std::vector<Row>& rows) {
     const Row& last = rows.back();
     return fmt::format(
-        "Stepwise the root's way takes {:.2f} times as long with {} nodes, in {} supersteps against {}: the root makes "
+        "Stepwise the root's way takes {:.2f} times as long with {} nodes, in {} supersteps against {}: the root "
+        "makes "
         "no more rays at a time than half of its queue holds.",
         stepwise(last.of[kRoot]) / stepwise(last.of[kAll]), last.nodes, supersteps(last.of[kRoot]),
         supersteps(last.of[kAll]));

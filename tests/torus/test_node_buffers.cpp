@@ -57,7 +57,7 @@ TEST_CASE("a node is charged its words, its queue and two boxes a link", "[torus
     CHECK(node_bytes(100, {8, 2}, 6) == 400 + 64 * (8 + 24) + 32 * 14);
     CHECK(node_bytes(0, {1, 1}, 0) == 64);
     CHECK(node_bytes(std::uint64_t{1} << 40, {UINT32_MAX, UINT32_MAX}, 6) ==
-          (std::uint64_t{1} << 42) + 64ull * 13 * UINT32_MAX);
+          (std::uint64_t{1} << 42) + (64ull * 13 + 32 * 7) * UINT32_MAX);
 }
 
 TEST_CASE("links that lead to another node: two for each side of more than one node", "[torus]") {
