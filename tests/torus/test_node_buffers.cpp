@@ -126,10 +126,10 @@ TEST_CASE("what does not fit is refused with figures, the fullest node and the r
     const std::uint64_t limit = bytes_with(200) + packet_bytes(9, 4);
     const std::string figures = fmt::format(
         "s.nff: does not fit: 3 of 4 nodes can hold what they have to, 1 cannot; node 1 (voxel 1, 0, 0 with 300 "
-        "objects) needs {:.1f} KB beside 1.6 KB of buffers, a node has {:.1f} KB; ",
+        "objects) needs {:.1f} KB beside 1.9 KB of buffers, a node has {:.1f} KB; ",
         std::ceil(bytes_with(300) / 102.4) / 10, std::floor(double(limit) / 102.4) / 10);
-    REQUIRE(packet_bytes(9, 4) == 1600);  // 1.5625 KB
-    const std::uint64_t enough = (bytes_with(300) + 1600 + 1023) / 1024 * 1024;
+    REQUIRE(packet_bytes(9, 4) == 1920);  // 1.875 KB
+    const std::uint64_t enough = (bytes_with(300) + 1920 + 1023) / 1024 * 1024;
     const auto refusal = [&](std::uint32_t queue, const NodeTrial& trial = {}) {
         return refusal_of([&] { plan_buffers("s.nff", memories, torus, limit, queue, 9, trial); });
     };
@@ -141,8 +141,8 @@ TEST_CASE("what does not fit is refused with figures, the fullest node and the r
     const auto remedy = [&](const char* nodes) {
         return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, enough);
     };
-    CHECK(refusal(0, std::ref(trial)) == remedy("2x2x2"));
-    CHECK(trial.calls == 1);
+    CHECK(refusal(0, std::ref(trial)) == remedy("4x2x2"));
+    CHECK(trial.calls == 2);
     trial = {8 * (bytes_with(200) - 512) / 4 + 8, 0};
     CHECK(refusal(0, std::ref(trial)) == remedy("4x2x2"));
     CHECK(trial.calls == 2);
@@ -175,7 +175,7 @@ TEST_CASE("where a shorter queue would do, the refusal names it", "[torus]") {
     const std::string message =
         refusal_of([&] { plan_buffers("s", memories, torus, limit, 1000, 9, std::ref(trial)); });
     const std::uint64_t enough = (bytes_with(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
-    CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("beside 187.5 KB of buffers") &&
+    CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("beside 226.6 KB of buffers") &&
                             Contains(fmt::format("; use --queue 100 or --pe-memory {}", enough)));
     CHECK(trial.calls == 0);
     CHECK(plan_buffers("s", memories, torus, limit, 100, 9).queue == 100);
