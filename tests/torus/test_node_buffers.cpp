@@ -136,14 +136,14 @@ TEST_CASE("what does not fit is refused with figures, the fullest node and the r
     CHECK(refusal(0) == figures + fmt::format("use --pe-memory {}", enough));
     CHECK(plan_buffers("s.nff", memories, torus, enough, 0, 9).queue >= 9);
 
-    // Six links instead of four: four more boxes of two packets, 512 bytes less for the words.
-    EvenTrial trial{8 * (bytes_with(200) - 512) / 4, 0};
+    // Six links instead of four: four more boxes of two rays and two more of two returns, 640 bytes less for the words.
+    EvenTrial trial{8 * (bytes_with(200) - 640) / 4, 0};
     const auto remedy = [&](const char* nodes) {
         return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, enough);
     };
-    CHECK(refusal(0, std::ref(trial)) == remedy("4x2x2"));
-    CHECK(trial.calls == 2);
-    trial = {8 * (bytes_with(200) - 512) / 4 + 8, 0};
+    CHECK(refusal(0, std::ref(trial)) == remedy("2x2x2"));
+    CHECK(trial.calls == 1);
+    trial = {8 * (bytes_with(200) - 640) / 4 + 8, 0};
     CHECK(refusal(0, std::ref(trial)) == remedy("4x2x2"));
     CHECK(trial.calls == 2);
     trial = {~0ull, 0};
