@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
+#include <utility>
 
 #include "error.hpp"
 #include "grid/hit_regions.hpp"
@@ -27,6 +29,58 @@ double longest_side(const Box& box) {
 }
 
 std::uint32_t word_number(std::size_t at) { return static_cast<std::uint32_t>(at); }
+
+// The sections of a grid's words behind its header.
+struct GridLists {
+    std::vector<std::uint32_t> voxels, rows, numbers;
+};
+
+void put_sphere(GridLists& lists, const std::vector<std::uint32_t>& words, const raya_objects& objects,
+                std::uint32_t number) {
+    const auto first = words.begin() + objects.spheres_at + std::ptrdiff_t{number} * RAYA_SPHERE_WORDS;
+    lists.rows.insert(lists.rows.end(), first, first + RAYA_ROW_WORDS);
+    lists.numbers.push_back(number);
+}
+
+void put_link(GridLists& lists, std::uint32_t next, std::uint32_t number) {
+    lists.rows.insert(lists.rows.end(), {next, 0, 0, 0});
+    lists.numbers.push_back(number);
+}
+
+// The voxel word for rows that are still to be put: so many spheres, and a link behind them.
+std::uint32_t voxel_word(std::size_t row, std::size_t spheres, bool linked) {
+    return word_number(row) | word_number(spheres) * RAYA_ONE_ROW | (linked ? RAYA_LINKED : 0);
+}
+
+// The list from `first` on, not empty; gives its voxel word. Spheres come first, as their numbers do.
+std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words, const raya_objects& objects,
+                       std::span<const std::uint32_t> list) {
+    const auto end_of_spheres = std::lower_bound(list.begin(), list.end(), objects.spheres);
+    const auto spheres = static_cast<std::size_t>(end_of_spheres - list.begin());
+    const auto in_word = [&](std::size_t from) { return std::min<std::size_t>(spheres - from, RAYA_MOST_ROWS); };
+    const auto word_from = [&](std::size_t from, std::size_t row) {
+        return voxel_word(row, in_word(from), from + in_word(from) < list.size());
+    };
+    const std::uint32_t word = word_from(0, lists.numbers.size());
+    for (std::size_t i = 0; i < spheres; ++i) {
+        if (i > 0 && i % RAYA_MOST_ROWS == 0)
+            put_link(lists, word_from(i, lists.numbers.size() + 1), RAYA_NO_OBJECT_HERE);
+        put_sphere(lists, words, objects, list[i]);
+    }
+    for (std::size_t i = spheres; i < list.size(); ++i)
+        put_link(lists, i + 1 < list.size() ? voxel_word(lists.numbers.size() + 1, 0, true) : 0, list[i]);
+    return word;
+}
+
+GridLists grid_lists(const std::vector<std::uint32_t>& words, const raya_objects& objects, const Partition& p) {
+    GridLists lists;
+    put_link(lists, 0, RAYA_NO_OBJECT_HERE);  // row 0
+    for (std::size_t v = 0; v + 1 < p.starts.size(); ++v) {
+        const std::span list(p.objects.data() + p.starts[v], p.starts[v + 1] - p.starts[v]);
+        lists.voxels.push_back(list.empty() ? 0 : put_list(lists, words, objects, list));
+    }
+    return lists;
+}
 
 }  // namespace
 
@@ -69,32 +123,37 @@ Partition accel_partition(const PackedJob& job, const NumberFormat& format, cons
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
     constexpr std::size_t kHeaderWords = sizeof(raya_grid_words) / sizeof(std::uint32_t);
+    raya_job job_header;
+    std::memcpy(&job_header, job.words.data(), sizeof job_header);
     std::vector<std::uint32_t>& words = job.words;
-    const std::size_t at = words.size(), voxels = p.starts.size() - 1, apart_at = at + kHeaderWords;
-    const std::size_t voxels_at = apart_at + p.apart.size(), lists_at = voxels_at + voxels;
-    if (lists_at + p.objects.size() > kMostWords)
-        throw UserError(
-            fmt::format("--accel grid packs to {} words, more than 32-bit word numbers reach; take fewer voxels",
-                        lists_at + p.objects.size()));
+    words.resize((words.size() + 3) / 4 * 4);  // aligned rows need fewer memory accesses
+    const std::size_t at = words.size();
+    const GridLists lists = grid_lists(words, job_header.objects, p);
     raya_grid_words header{};
+    std::size_t next = at + kHeaderWords;
+    const auto place = [&](std::size_t count) { return word_number(std::exchange(next, next + count)); };
     header.grid = p.grid;
     header.apart = word_number(p.apart.size());
-    header.apart_at = word_number(apart_at);
-    header.voxels_at = word_number(voxels_at);
-    words.resize(apart_at);
+    header.apart_at = place(p.apart.size());
+    header.voxels_at = place(lists.voxels.size());
+    next = (next + 3) / 4 * 4;
+    header.rows_at = place(lists.rows.size());
+    header.numbers_at = place(lists.numbers.size());
+    if (next > kMostWords || lists.numbers.size() > RAYA_ROW_NUMBER)
+        throw UserError(
+            fmt::format("--accel grid packs to {} words, more than 32-bit numbers reach; take fewer voxels", next));
+    words.resize(next);
     std::memcpy(&words[at], &header, sizeof header);
-    words.insert(words.end(), p.apart.begin(), p.apart.end());
-    for (std::size_t v = 0; v < voxels; ++v)
-        words.push_back(p.starts[v] == p.starts[v + 1] ? 0 : word_number(lists_at + p.starts[v]));
-    words.insert(words.end(), p.objects.begin(), p.objects.end());
-    for (std::size_t v = 0; v < voxels; ++v)
-        if (p.starts[v] != p.starts[v + 1]) words[lists_at + p.starts[v + 1] - 1] |= RAYA_LAST_OBJECT;
-    raya_job job_header;
-    std::memcpy(&job_header, words.data(), sizeof job_header);
+    const auto put = [&](const std::vector<std::uint32_t>& from, std::uint32_t to) {
+        std::copy(from.begin(), from.end(), words.begin() + to);
+    };
+    put(p.apart, header.apart_at);
+    put(lists.voxels, header.voxels_at);
+    put(lists.rows, header.rows_at);
+    put(lists.numbers, header.numbers_at);
     job_header.grid_at = word_number(at);
     std::memcpy(words.data(), &job_header, sizeof job_header);
-    return {
-        {p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]}, p.copies(), words.size() - at, header.apart};
+    return {{p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]}, p.copies(), next - at, header.apart};
 }
 
 }  // namespace raya

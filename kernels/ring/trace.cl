@@ -37,41 +37,61 @@ static inline void start_walk(words scene, tree* t, mask fresh, real row, real c
 }
 
 // Lanes whose walk is done go on to the next point of their pixel, or store it and take the PE's next one.
-static inline void next_points(words scene, tree* t, pixel_store* store, volatile __local uint* next) {
+static inline void next_points(words scene, tree* t, pixel_store* store, tree_pixels* p, volatile __local uint* next) {
     lanes_index idle, fresh, newcomer;
     lanes_real row, column;
     idle.truth = mask_not(t->walking);
     fresh.all = newcomer.all = (index)(0);
     row.all = column.all = num_all(0.0f);
-    add_points(t, store, idle.truth & (store->pixel.all != RAYA_NO_PIXEL));
-    const lanes_vec colour = lanes_of_vec(finished_colours(store));
+    add_points(t, store, p, idle.truth & (p->pixel.all != RAYA_NO_PIXEL));
+    const lanes_vec colour = lanes_of_vec(finished_colours(store, p));
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!idle.lane[lane]) continue;
-        const int has_pixel = store->pixel.lane[lane] != RAYA_NO_PIXEL;
-        if (!has_pixel || ++store->point.lane[lane] == raya_points(store->points)) {
-            if (has_pixel) store_pixel((job_words)scene, t, store, &colour, lane);
-            take_pixel(store, next, lane);
+        const int has_pixel = p->pixel.lane[lane] != RAYA_NO_PIXEL;
+        if (!has_pixel || ++p->point.lane[lane] == raya_points(store->points)) {
+            if (has_pixel) store_pixel((job_words)scene, t, store, p, &colour, lane);
+            take_pixel(store, p, next, lane);
             newcomer.lane[lane] = RAYA_TRUE;
         }
-        if (store->pixel.lane[lane] == RAYA_NO_PIXEL) continue;
-        const raya_pixel pixel = raya_pixel_of(store->mapping, store->share, store->pixel.lane[lane]);
-        row.lane[lane] = pixel.row + raya_point_down(store->points, store->point.lane[lane]);
-        column.lane[lane] = pixel.column + raya_point_right(store->points, store->point.lane[lane]);
+        if (p->pixel.lane[lane] == RAYA_NO_PIXEL) continue;
+        const raya_pixel pixel = raya_pixel_of(store->mapping, store->share, p->pixel.lane[lane]);
+        row.lane[lane] = pixel.row + raya_point_down(store->points, p->point.lane[lane]);
+        column.lane[lane] = pixel.column + raya_point_right(store->points, p->point.lane[lane]);
         fresh.lane[lane] = RAYA_TRUE;
     }
     for (uint e = 0; e < RAYA_EVENTS; ++e) t->events[e].all = choose_index(newcomer.truth, (index)(0), t->events[e].all);
     if (mask_any(fresh.truth)) start_walk(scene, t, fresh.truth, row.all, column.all);
 }
 
+// Puts the rays that the trees follow into the pool's first slots.
+static inline void put_trees(words scene, tree* trees, ray_pool* pool) {
+    for (uint i = 0; i < RAYA_TREES; ++i) {
+        const mask walking = trees[i].walking;
+        const ray r = {vec_of_lanes(trees[i].ray.origin), vec_of_lanes(trees[i].ray.direction),
+                       choose(walking, num_const(RAYA_FAR), num_const(0.0f))};
+        put_rays(scene, pool, i, &trees[i], walking, r, 0);
+    }
+}
+
 static inline void trace_share(words scene, pixel_store* store, volatile __local uint* next) {
-    tree t;
-    clear_tree(&t);
+    tree trees[RAYA_TREES];
+    tree_pixels pixels[RAYA_TREES];
+    ray_pool pool;
+    open_pool(&pool);
+    for (uint i = 0; i < RAYA_TREES; ++i) {
+        clear_tree(&trees[i]);
+        clear_pixels(&pixels[i]);
+    }
     for (;;) {
-        if (mask_any(mask_not(t.walking))) next_points(scene, &t, store, next);
-        if (!mask_any(t.walking)) return;
-        const ray r = {vec_of_lanes(t.ray.origin), vec_of_lanes(t.ray.direction),
-                       choose(t.walking, num_const(RAYA_FAR), num_const(0.0f))};
-        shade(scene, &t, find_hit(scene, &t, t.walking, r));
+        int walking = 0;
+        for (uint i = 0; i < RAYA_TREES; ++i) {
+            if (mask_any(mask_not(trees[i].walking))) next_points(scene, &trees[i], store, &pixels[i], next);
+            walking |= mask_any(trees[i].walking);
+        }
+        if (!walking) return;
+        put_trees(scene, trees, &pool);
+        find_hits(scene, &pool, 0);
+        shade(scene, trees, &pool);
     }
 }
 

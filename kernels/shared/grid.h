@@ -17,18 +17,31 @@ RAYA_SHARED_SIZE(raya_grid, 4 * 10);
 
 #define RAYA_NO_VOXEL 0xffffffffu
 
-// The grid in the words of a job, at raya_job.grid_at. Then follow the numbers of the objects held apart, a word for each voxel, and the
-// lists of the voxels, one after another. "at" words are distances from the job's first word.
+// The grid in the words of a job, at raya_job.grid_at. After this header: the numbers of the objects held apart; a word for each voxel;
+// the rows of all lists, four words each, list after list; the number of each row's object. "at" words are distances from the job's first word.
 typedef struct {
     raya_grid grid;
-    raya_u32 apart;      // how many finite objects are in no list, because every ray is tested against them, as against planes
-    raya_u32 apart_at;   // where their numbers start, ascending
-    raya_u32 voxels_at;  // where the voxels' words start: each tells where the voxel's list starts, 0 for an empty one
+    raya_u32 apart;      // how many finite objects are in no list, since every ray is tested against them, as against planes
+    raya_u32 apart_at;   // their numbers, ascending
+    raya_u32 voxels_at;  // voxel words
+    raya_u32 rows_at;
+    raya_u32 numbers_at;
 } raya_grid_words;
-RAYA_SHARED_SIZE(raya_grid_words, 4 * (10 + 3));
+RAYA_SHARED_SIZE(raya_grid_words, 4 * (10 + 5));
 
-// A list holds the numbers of its objects, ascending; the last one has this bit.
-#define RAYA_LAST_OBJECT 0x80000000u
+// A voxel word says what is to be gone through: so many spheres (RAYA_ROWS_LEFT) from the row of that number (RAYA_ROW_NUMBER) on, and then,
+// where RAYA_LINKED is set, the link in the row behind them. 0: nothing.
+#define RAYA_ROW_NUMBER 0x03ffffffu
+#define RAYA_ONE_ROW 0x04000000u
+#define RAYA_ROWS_LEFT 0x7c000000u
+#define RAYA_MOST_ROWS 31u  // in one voxel word
+#define RAYA_LINKED 0x80000000u
+
+// Row 0 belongs to no list. Words of a row: a sphere's are the first four of its object, all that a hit needs. A link's: the voxel word for what
+// comes next, 0 at the end; its number is that of an object that is no sphere, or RAYA_NO_OBJECT_HERE: a list of more than RAYA_MOST_ROWS spheres
+// goes on.
+enum { RAYA_ROW_NEXT = 0, RAYA_ROW_WORDS = 4 };
+#define RAYA_NO_OBJECT_HERE 0xffffffffu
 
 RAYA_SHARED_FUNCTION raya_u32 raya_voxels(raya_grid g) { return g.divisions[0] * g.divisions[1] * g.divisions[2]; }
 

@@ -66,7 +66,10 @@ void shade_once(__global const uint* restrict job,
     t.walking = mask_all(1);
     t.level = (index)(level);
     for (uint i = 0; i < RAYA_PENDING; ++i) t.pending[i] = t.ray;
-    shade(job, &t, closest_hit(job, &((job_words)job)->objects, r));
+    ray_pool pool;
+    pool.found = closest_hit(job, &((job_words)job)->objects, r);
+    pool.direction = r.direction;
+    shade(job, &t, &pool);
 
     const uint words = 3 + RAYA_EVENTS;
     __global uint* to = state + first * words;

@@ -76,6 +76,94 @@ TEST_CASE("tests and steps are counted for each ray, whatever lanes, groups and 
     }
 }
 
+TEST_CASE("rays of how many trees and lights wait together changes no bit and no count", "[ring][accel]") {
+    Session session(choose_device(""));
+    Scene scene = project_scene("polygons");
+    for (int i = 0; i < 5; ++i) scene.lights.push_back({{3.0 * i - 6, 5.0 - i, 4}, Colour{0.2, 0.1 * i, 0.3}});
+    const std::string format = GENERATE("fp32", "spa22");
+    RingCase c{.width = 32, .height = 24, .pes = 3, .lanes = 4, .format = format};
+    const RingResult plain = render_with(session, scene, c, {});
+    c.more_options = {"-DRAYA_TREES=1", "-DRAYA_BEAMS=1"};
+    const RingResult one = render_with(session, scene, c, cut(6, 5, 4));
+    CHECK(answer_of(one) == answer_of(plain));
+    for (const auto& [trees, beams] : {std::pair{"3", "2"}, {"2", "8"}, {"8", "7"}}) {
+        c.more_options = {std::string("-DRAYA_TREES=") + trees, std::string("-DRAYA_BEAMS=") + beams};
+        CAPTURE(format, c.more_options);
+        const RingResult many = render_with(session, scene, c, cut(6, 5, 4));
+        CHECK(answer_of(many) == answer_of(plain));
+        CHECK(many.all.events == one.all.events);
+    }
+}
+
+// Every object twice or three times, far apart in number, in surfaces of their own: each hit is at several equal
+// distances.
+Scene doubled_scene(std::uint64_t seed) {
+    Scene scene = random_view_scene(seed);
+    SplitMix random(seed);
+    const auto double_all = [&](auto& objects) {
+        auto copies = objects;
+        const std::size_t count = objects.size();
+        for (std::size_t i = 0; i < 2 * count; ++i) {
+            auto copy = objects[random_below(random, count)];
+            copy.surface = static_cast<int>(random_below(random, 3));
+            copies.push_back(copy);
+        }
+        objects = copies;
+    };
+    double_all(scene.spheres);
+    double_all(scene.polygons);
+    double_all(scene.cones);
+    return scene;
+}
+
+TEST_CASE("of objects at equal distances the lowest number is hit, in whichever voxels they are", "[ring][accel]") {
+    Session session(choose_device(""));
+    const std::string format = GENERATE("fp32", "spa22", "e5m6");
+    for (const std::uint64_t seed : kRichScenes) {
+        const Scene scene = doubled_scene(seed);
+        const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
+        const std::string expected = answer_of(render_with(session, scene, c, {}));
+        CAPTURE(seed, format);
+        CHECK(answer_of(render_with(session, scene, c, cut(1, 1, 1))) == expected);
+        CHECK(answer_of(render_with(session, scene, c, cut(8, 5, 7))) == expected);
+        CHECK(answer_of(render_with(session, scene, c, kAutomatic)) == expected);
+    }
+}
+
+// A floor of many squares, one that is larger than all of them and an infinite plane: all hits are at equal distances.
+TEST_CASE("of a plane, a polygon held apart and listed ones at equal distances the lowest number is hit",
+          "[ring][accel]") {
+    Session session(choose_device(""));
+    Scene scene = project_scene("planes");
+    scene.planes = {{{0, 0, 1}, 0, 0}};
+    // The sphere makes the box high: rays find the large square in voxels before the one where they meet it.
+    scene.spheres = {{{-4, -4, 4}, 0.1, 0}};
+    scene.cones.clear();
+    scene.polygons = {};
+    const auto add_square = [&](double x, double y, double side, int surface) {
+        scene.polygons.push_back(
+            {{{x, y, 0}, {x + side, y, 0}, {x + side, y + side, 0}, {x, y + side, 0}}, {}, surface});
+    };
+    const auto surfaces = static_cast<int>(scene.surfaces.size());
+    for (int i = 0; i < 40; ++i) add_square(-4 + i % 8, -2 + i / 8, 1, i % surfaces);
+    add_square(-100, -100, 200, 1 % surfaces);
+    for (int i = 0; i < 40; ++i) add_square(-4 + i / 5, -2 + i % 5, 1, (i + 1) % surfaces);
+    scene.view.from = {1, -6, 5};
+    scene.view.at = {0, 0, 0};
+    scene.view.up = {0, 0, 1};
+    scene.lights = {{{2, 1, 8}, {}}};
+    for (const bool plane : {true, false}) {
+        if (!plane) scene.planes.clear();
+        const RingCase c{.width = 32, .height = 24, .pes = 8};
+        const std::string expected = answer_of(render_with(session, scene, c, {}));
+        const RingResult grid = render_with(session, scene, c, kAutomatic);
+        CAPTURE(plane);
+        CHECK(answer_of(grid) == expected);
+        CHECK(grid.accel->apart == 1);
+        CHECK(answer_of(render_with(session, scene, c, cut(9, 9, 3))) == expected);
+    }
+}
+
 TEST_CASE("supersampling through a grid gives the same pixels", "[ring][accel]") {
     Session session(choose_device(""));
     RingCase c{.width = 32, .height = 24, .pes = 8};

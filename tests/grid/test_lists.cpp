@@ -1,0 +1,109 @@
+// A grid's words: gone through as kernels do, they give the lists of the partition.
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "grid/accel.hpp"
+#include "grid/partition_lists.hpp"
+
+namespace raya {
+namespace {
+
+raya_grid_words grid_of(const PackedJob& job) {
+    raya_grid_words grid;
+    std::memcpy(&grid, &job.words[header_of(job).grid_at], sizeof grid);
+    return grid;
+}
+
+/// Numbers of the objects that the voxel word leads to. Checks that every sphere's row holds its words.
+std::vector<std::uint32_t> objects_behind(const PackedJob& job, std::uint32_t word) {
+    const raya_grid_words grid = grid_of(job);
+    const raya_objects objects = header_of(job).objects;
+    std::vector<std::uint32_t> numbers;
+    while (word != 0) {
+        std::uint32_t row = word & RAYA_ROW_NUMBER;
+        REQUIRE(row > 0);
+        for (std::uint32_t left = word & RAYA_ROWS_LEFT; left > 0; left -= RAYA_ONE_ROW, ++row) {
+            const std::uint32_t number = job.words[grid.numbers_at + row];
+            REQUIRE(number < objects.spheres);
+            for (std::uint32_t i = 0; i < RAYA_ROW_WORDS; ++i)
+                REQUIRE(job.words[grid.rows_at + RAYA_ROW_WORDS * row + i] ==
+                        job.words[objects.spheres_at + RAYA_SPHERE_WORDS * number + i]);
+            numbers.push_back(number);
+        }
+        if (!(word & RAYA_LINKED)) return numbers;
+        const std::uint32_t linked = job.words[grid.numbers_at + row];
+        if (linked != RAYA_NO_OBJECT_HERE) {
+            REQUIRE(linked >= objects.spheres + objects.planes);
+            numbers.push_back(linked);
+        }
+        word = job.words[grid.rows_at + RAYA_ROW_WORDS * row + RAYA_ROW_NEXT];
+    }
+    return numbers;
+}
+
+void check_lists(const PackedJob& job, const Partition& p) {
+    const raya_grid_words grid = grid_of(job);
+    CHECK(grid.rows_at % 4 == 0);
+    for (std::size_t v = 0; v + 1 < p.starts.size(); ++v) {
+        const std::vector<std::uint32_t> expected(p.objects.begin() + p.starts[v], p.objects.begin() + p.starts[v + 1]);
+        if (objects_behind(job, job.words[grid.voxels_at + v]) != expected) {
+            CAPTURE(v);
+            FAIL("another list");
+        }
+    }
+}
+
+/// Spheres and other objects in one place, so many of each, all in every list.
+Scene heap(std::size_t spheres, std::size_t others) {
+    Scene scene = empty_scene();
+    SplitMix random(spheres * 1000 + others);
+    for (std::size_t i = 0; i < spheres; ++i) add_sphere(scene, random, 1);
+    for (std::size_t i = 0; i < others; ++i) i % 3 == 0 ? add_cone(scene, random, 1, 1) : add_polygon(scene, random);
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a grid's words hold the lists of the partition, and the job's words stay") {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        SplitMix random(seed);
+        const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
+        PackedJob job = job_in(mixed_scene(seed), format);
+        const std::vector<std::uint32_t> before = job.words;
+        const Divisions divisions = random_divisions(random);
+        const std::vector<std::uint32_t> finite = finite_numbers(job);
+        std::vector<std::uint32_t> apart;
+        for (const std::uint32_t number : finite)
+            if (below(random, 5) == 0) apart.push_back(number);
+        const Partition p = partition(job, format, divisions, apart);
+        const AccelSummary summary = append_grid(job, p);
+        CAPTURE(seed, divisions, apart);
+        check_lists(job, p);
+        const raya_grid_words grid = grid_of(job);
+        CHECK(std::vector<std::uint32_t>(job.words.begin() + grid.apart_at,
+                                         job.words.begin() + grid.apart_at + grid.apart) == apart);
+        CHECK(std::memcmp(&grid.grid, &p.grid, sizeof p.grid) == 0);
+        CHECK(summary.copies == p.copies());
+        CHECK(summary.apart == apart.size());
+        CHECK(summary.divisions == divisions);
+        CHECK(job.words.size() - header_of(job).grid_at == summary.words);
+        raya_job unlinked = header_of(job);
+        unlinked.grid_at = 0;
+        std::memcpy(job.words.data(), &unlinked, sizeof unlinked);
+        CHECK(std::equal(before.begin(), before.end(), job.words.begin()));
+    }
+}
+
+TEST_CASE("lists of every length are whole: several voxel words, links to other objects") {
+    for (const std::size_t spheres : {0u, 1u, 30u, 31u, 32u, 61u, 62u, 63u, 93u, 94u, 200u})
+        for (const std::size_t others : {0u, 1u, 2u, 40u}) {
+            PackedJob job = job_in(heap(spheres, others), {});
+            CAPTURE(spheres, others);
+            const Partition p = partition(job, {}, {1, 1, 1});
+            REQUIRE(p.objects.size() == spheres + others);
+            append_grid(job, p);
+            check_lists(job, p);
+        }
+}
+
+}  // namespace raya

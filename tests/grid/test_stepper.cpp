@@ -1,0 +1,92 @@
+// The walk as the ring's lanes take it, against the walk of one step at a time: the same voxels at the same t, bit for
+// bit, up to where the ray leaves the box.
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "grid/random_walks.hpp"
+#include "kernels/kernel_runner.hpp"
+#include "kernels/probe.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kGrids = 40, kRays = 1024;  // in each grid
+
+struct Walks {
+    std::vector<std::uint32_t> voxels;  // [ray][most], RAYA_NO_VOXEL behind the last
+    std::vector<float> leaves;          // [ray][most]
+};
+
+std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
+
+std::vector<std::uint32_t> words_of(const raya_grid& grid) {
+    std::vector<std::uint32_t> words(sizeof grid / 4);
+    std::memcpy(words.data(), &grid, sizeof grid);
+    return words;
+}
+
+Walks plain_walks(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
+    const std::size_t count = rays.size() / 7;
+    const std::uint32_t most = most_voxels(grid);
+    const auto grid_buffer = runner.filled("grid", words_of(grid));
+    const auto ray_buffer = runner.filled("rays", rays);
+    auto wide = runner.constant<std::uint32_t>("wide", count, 0);
+    auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
+    auto leaves = runner.constant<float>("leaves", count * most, 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
+               Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
+                                                       leaves);
+    return {runner.read(voxels), runner.read(leaves)};
+}
+
+Walks stepped_walks(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
+    const std::size_t count = rays.size() / 7;
+    const std::uint32_t most = most_voxels(grid);
+    const auto grid_buffer = runner.filled("grid", words_of(grid));
+    const auto ray_buffer = runner.filled("rays", rays);
+    auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
+    auto leaves = runner.constant<float>("leaves", count * most, 0);
+    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
+        "stepped_walks", count, grid_buffer, ray_buffer, most, voxels, leaves);
+    return {runner.read(voxels), runner.read(leaves)};
+}
+
+/// Where the steps end: a ray that leaves the box through an edge touches voxels for no length, which they pass over.
+std::size_t end_of_walk(const Walks& w, std::size_t ray, std::uint32_t most) {
+    std::size_t count = 0;
+    while (count < most && w.voxels[ray * most + count] != RAYA_NO_VOXEL) ++count;
+    while (count > 1 && w.leaves[ray * most + count - 2] == w.leaves[ray * most + count - 1]) --count;
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("lanes step through the voxels of the walk, at the same t, whatever their number") {
+    std::size_t steps = 0;
+    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
+        KernelRunner plain("../grid/walk_probe.cl", {lanes, true}), stepped("../grid/stepper_probe.cl", {lanes, true});
+        for (std::uint64_t seed = 0; seed < kGrids; ++seed) {
+            SplitMix random(seed);
+            const raya_grid grid = random_grid(random);
+            std::vector<reference::Ray> rays;
+            for (std::size_t i = 0; i < kRays; ++i) rays.push_back(random_walk_ray(random, grid));
+            const std::vector<float> words = ray_words(rays);
+            const Walks expected = plain_walks(plain, grid, words), found = stepped_walks(stepped, grid, words);
+            const std::uint32_t most = most_voxels(grid);
+            for (std::size_t ray = 0; ray < kRays; ++ray) {
+                const std::size_t end = end_of_walk(expected, ray, most);
+                CAPTURE(lanes, seed, ray, end);
+                std::size_t i = ray * most;
+                for (; i < ray * most + end; ++i) {
+                    if (found.voxels[i] != expected.voxels[i]) FAIL("another voxel");
+                    if (bits({found.leaves[i]}) != bits({expected.leaves[i]})) FAIL("left at another t");
+                }
+                if (i < (ray + 1) * most) REQUIRE(found.voxels[i] == RAYA_NO_VOXEL);
+                steps += end;
+            }
+        }
+    }
+    CHECK(steps > 4 * kGrids * kRays);
+}
+
+}  // namespace raya
