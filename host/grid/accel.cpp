@@ -13,8 +13,8 @@
 namespace raya {
 namespace {
 
-// Measured on SPD's balls, lattice and tetra and on 8,320 even spheres (fp32, 16 lanes): 2, 4 and 8 differ by little and in
-// no one direction, 1 takes up to 1.5 times as long, 16 up to 1.4 times and twice the memory.
+// Measured on SPD's balls, lattice and tetra and on 8,320 even spheres (fp32, 16 lanes): 2, 4 and 8 differ by little
+// and in no one direction, 1 takes up to 1.5 times as long, 16 up to 1.4 times and twice the memory.
 constexpr double kVoxelsPerObject = 4;
 
 constexpr double kLeastReach = 2;       // of rays, in extents of the scene: sizes of objects hardly depend on it
