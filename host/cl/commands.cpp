@@ -13,6 +13,8 @@ namespace {
 // Events hold driver memory until their times are read, so a long run stops for a moment every so many commands.
 constexpr std::size_t kMaxPending = 4096;
 
+std::string copied(const std::string& from, const std::string& to) { return from + " -> " + to; }
+
 }  // namespace
 
 Session::Session(const cl::Device& device, Timing timing)
@@ -25,7 +27,10 @@ Session::Session(const cl::Device& device, Timing timing)
 
 Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
-    return Program(context_, device_, name, source, options);
+    const StepLog::Step building = step("build " + name);
+    std::vector<std::string> all = options;
+    if (noted_arguments_ > 0) all.emplace_back("-cl-kernel-arg-info");  // names of arguments; the code stays the same
+    return Program(context_, device_, name, source, all);
 }
 
 cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const {
@@ -68,10 +73,10 @@ void Session::submit(const std::string& what, CommandRecord record, Enqueue&& en
     pending_.push_back({std::move(record), std::move(event)});
 }
 
-void Session::launch_kernel(const std::string& label, const cl::Kernel& kernel, const std::string& kernel_name,
-                            std::size_t groups, std::size_t group_size, std::size_t local_bytes) {
-    const std::string what =
-        fmt::format("'{}': launching kernel '{}' ({} groups of {} work-items)", label, kernel_name, groups, group_size);
+void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes) {
+    const std::size_t groups = record.groups, group_size = record.group_size;
+    const std::string what = fmt::format("'{}': launching kernel '{}' ({} groups of {} work-items)", record.label,
+                                         record.object, groups, group_size);
     if (groups == 0 || group_size == 0) throw std::invalid_argument(what + ": there is nothing to run");
     if (local_bytes > info_.local_memory_bytes) {
         throw DeviceError(
@@ -79,7 +84,7 @@ void Session::launch_kernel(const std::string& label, const cl::Kernel& kernel, 
                         "these words in global memory, or choose another device",
                         what, local_bytes, info_.name, info_.local_memory_bytes));
     }
-    submit(what, {.label = label, .kind = "kernel"}, [&](cl::Event* event) {
+    submit(what, std::move(record), [&](cl::Event* event) {
         queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                     nullptr, event);
     });
@@ -89,7 +94,7 @@ void Session::write_bytes(const std::string& label, const cl::Buffer& to, const 
                           std::size_t bytes, const void* from) {
     if (bytes == 0) return;
     submit(fmt::format("'{}': writing {} bytes into buffer '{}'", label, bytes, name),
-           {.label = label, .kind = "write", .bytes = bytes},
+           {.label = label, .kind = "write", .bytes = bytes, .object = name},
            [&](cl::Event* event) { queue_.enqueueWriteBuffer(to, CL_TRUE, offset, bytes, from, nullptr, event); });
 }
 
@@ -97,14 +102,15 @@ void Session::read_bytes(const std::string& label, const cl::Buffer& from, const
                          std::size_t bytes, void* to) {
     if (bytes == 0) return;
     submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
-           {.label = label, .kind = "read", .bytes = bytes},
+           {.label = label, .kind = "read", .bytes = bytes, .object = name},
            [&](cl::Event* event) { queue_.enqueueReadBuffer(from, CL_TRUE, offset, bytes, to, nullptr, event); });
 }
 
 void Session::copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes) {
     if (bytes == 0) return;
     submit(fmt::format("'{}': copying {} bytes of buffer '{}' into buffer '{}'", label, bytes, from.name, to.name),
-           {.label = label, .kind = "copy", .bytes = bytes}, [&](cl::Event* event) {
+           {.label = label, .kind = "copy", .bytes = bytes, .object = copied(from.name, to.name)},
+           [&](cl::Event* event) {
                queue_.enqueueCopyBuffer(from.memory, to.memory, from.offset, to.offset, bytes, nullptr, event);
            });
 }
@@ -114,7 +120,11 @@ void Session::copy_rows(const std::string& label, const Place& from, const Block
     if (size.bytes == 0 || size.rows == 0 || size.slabs == 0) return;
     submit(fmt::format("'{}': copying {} x {} rows of {} bytes of buffer '{}' into buffer '{}'", label, size.slabs,
                        size.rows, size.bytes, from.name, to.name),
-           {.label = label, .kind = "copy", .bytes = size.bytes * size.rows * size.slabs}, [&](cl::Event* event) {
+           {.label = label,
+            .kind = "copy",
+            .bytes = size.bytes * size.rows * size.slabs,
+            .object = copied(from.name, to.name)},
+           [&](cl::Event* event) {
                queue_.enqueueCopyBufferRect(from.memory, to.memory, {from.offset, 0, 0}, {to.offset, 0, 0},
                                             {size.bytes, size.rows, size.slabs}, from_at.pitch, from_at.slab_pitch,
                                             to_at.pitch, to_at.slab_pitch, nullptr, event);
@@ -124,7 +134,7 @@ void Session::copy_rows(const std::string& label, const Place& from, const Block
 void Session::fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
                          const void* value, std::size_t value_bytes) {
     submit(fmt::format("'{}': filling buffer '{}' of {} bytes", label, name, bytes),
-           {.label = label, .kind = "fill", .bytes = bytes}, [&](cl::Event* event) {
+           {.label = label, .kind = "fill", .bytes = bytes, .object = name}, [&](cl::Event* event) {
                cl_event filled = nullptr;
                const cl_int code =
                    clEnqueueFillBuffer(queue_(), to(), value, value_bytes, 0, bytes, 0, nullptr, &filled);

@@ -12,6 +12,7 @@
 #include "cl/opencl.hpp"
 #include "cl/profile.hpp"
 #include "cl/program.hpp"
+#include "cl/step_log.hpp"
 
 namespace raya {
 
@@ -45,7 +46,15 @@ class Session {
                 std::type_identity_t<Params>... args) {
         kernel.set_arguments(args...);
         const std::size_t local_bytes = (local_bytes_of(args) + ... + 0);
-        launch_kernel(label, kernel.handle(), kernel.name(), groups, group_size, local_bytes);
+        const bool texts = noted_arguments_ > 0;
+        noted_arguments_ -= texts;
+        launch_kernel({.label = label,
+                       .kind = "kernel",
+                       .object = kernel.name(),
+                       .groups = groups,
+                       .group_size = group_size,
+                       .arguments = texts ? kernel.argument_texts(args...) : std::vector<ArgumentText>{}},
+                      kernel.handle(), local_bytes);
     }
 
     /// Host to device: `from` into `to` from element `offset` on. Waits, so `from` may change afterwards.
@@ -100,6 +109,16 @@ class Session {
         fill_bytes(label, to.memory(), to.name(), to.bytes(), &value, sizeof(T));
     }
 
+    /// For traces: from now on `steps`, which outlives the session, is told of step()s and builds, and the profile
+    /// keeps the arguments of the next `launches` launches, with their names in programs built from now on.
+    void observe(StepLog& steps, std::size_t launches) {
+        steps_ = &steps;
+        noted_arguments_ = launches;
+    }
+
+    /// A step of the host, from now to the end of the scope that it is kept in; for the log of observe(), else nothing.
+    [[nodiscard]] StepLog::Step step(const std::string& name) const { return StepLog::Step(steps_, name); }
+
     /// Waits for all commands. DeviceError names the label of a command that failed on the device.
     void finish();
 
@@ -131,8 +150,7 @@ class Session {
     static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
                              std::size_t count, std::size_t blocks, std::size_t slabs);
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
-    void launch_kernel(const std::string& label, const cl::Kernel& kernel, const std::string& kernel_name,
-                       std::size_t groups, std::size_t group_size, std::size_t local_bytes);
+    void launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes);
     void write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
                      std::size_t bytes, const void* from);
     void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
@@ -154,6 +172,8 @@ class Session {
     cl::CommandQueue queue_;
     std::vector<Pending> pending_;
     Profile profile_;
+    StepLog* steps_ = nullptr;
+    std::size_t noted_arguments_ = 0;  // launches whose arguments are still to be kept
 };
 
 }  // namespace raya

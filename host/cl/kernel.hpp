@@ -7,12 +7,36 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "cl/buffer.hpp"
 #include "cl/error_names.hpp"
 #include "cl/opencl.hpp"
+#include "cl/profile.hpp"
 
 namespace raya {
+
+/// The parameter's name in the kernel's source; its number from 0 where the driver keeps no names.
+std::string argument_name(const cl::Kernel& kernel, cl_uint index);
+
+/// A kernel's argument, to be read: a buffer's name and size, bytes of local memory, a number.
+template <class T>
+std::string argument_text(const Buffer<T>& buffer) {
+    return fmt::format("{}, {} x {} bytes", buffer.name(), buffer.size(), sizeof(T));
+}
+
+template <class T>
+std::string argument_text(const LocalMemory<T>& local) {
+    return fmt::format("local, {} bytes", local.bytes());
+}
+
+template <class T>
+std::string argument_text(const T& value) {
+    if constexpr (std::is_arithmetic_v<T>)
+        return fmt::format("{}", value);
+    else
+        return fmt::format("struct of {} bytes", sizeof(T));
+}
 
 /// Args, in the kernel's order: `const Buffer<T>&` for an input, `Buffer<T>&` for an output, LocalMemory<T> for
 /// __local memory, and plain values such as cl_uint or cl_float for the rest.
@@ -25,6 +49,12 @@ class Kernel {
 
     const std::string& name() const { return name_; }
     const cl::Kernel& handle() const { return kernel_; }
+
+    /// What a launch with these arguments is told, to be read: names, where the driver knows them, and values.
+    std::vector<ArgumentText> argument_texts(const Args&... args) const {
+        cl_uint index = 0;
+        return {ArgumentText{argument_name(kernel_, index++), argument_text(args)}...};
+    }
 
     /// Sets all arguments for the launches that follow; DeviceError names the kernel and the argument's number from 0.
     void set_arguments(Args... args) {

@@ -8,12 +8,20 @@
 
 namespace raya {
 
+/// An argument of a kernel, to be read.
+struct ArgumentText {
+    std::string name, value;
+};
+
 /// One command. Times are nanoseconds of the device's own clock (CL_PROFILING_COMMAND_*), all 0 where it has none.
 struct CommandRecord {
     std::string label;
     std::string kind;  // "kernel", "write", "read", "copy" or "fill"
     std::uint64_t queued = 0, submitted = 0, started = 0, ended = 0;
-    std::uint64_t bytes = 0;  // moved or filled; 0 for a kernel
+    std::uint64_t bytes = 0;                   // moved or filled; 0 for a kernel
+    std::string object{};                      // the kernel; of a transfer its buffer, of a copy both
+    std::uint64_t groups = 0, group_size = 0;  // of a kernel
+    std::vector<ArgumentText> arguments{};     // of a kernel, only if Session::observe() asks for them
 };
 
 /// All commands of one label and kind. Times are from start to end on the device, nanoseconds.
@@ -23,6 +31,8 @@ struct LabelSummary {
     std::uint64_t total_ns = 0, min_ns = 0;
     double mean_ns = 0;
     std::uint64_t max_ns = 0;
+    std::uint64_t submit_ns = 0, start_ns = 0;  // in all, from queued to submitted, from there to start
+    std::uint64_t bytes = 0;                    // moved or filled, in all
 };
 
 /// The commands of a session in the order in which they were given.

@@ -12,6 +12,7 @@ namespace {
 void render(const CLI::App& parsed, const RenderCommand& command) {
     const Machine& machine = machine_named(command.render.machine);
     refuse_options_of_other_machines(parsed, machine);
+    check_trace(parsed, command.trace);
     check_targets(command);
     machine.divides_scene() ? render_on_torus(command) : render_on_ring(command);
 }
@@ -35,7 +36,10 @@ void add_render_command(CLI::App& program) {
         ->type_name("IMAGE");
     command->add_option("--report", options->report, "Write everything that was counted and measured")
         ->type_name("FILE.json");
-    command->add_flag("--profile", options->profile, "Print launches and times of every labelled command");
+    command->add_flag("--profile", options->profile,
+                      "Print launches and times of every labelled command, the builds, and how near each kernel came "
+                      "to the device's measured peak (the roofline)");
+    add_trace_options(*command, options->trace);
     command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
     refuse_odd_values(*command);
     command->callback([command, options] { render(*command, *options); });

@@ -7,7 +7,9 @@
 #include <set>
 
 #include "error.hpp"
+#include "report/profile_table.hpp"
 #include "report/whole_file.hpp"
+#include "ring/device_peak.hpp"
 
 namespace raya {
 namespace {
@@ -18,7 +20,8 @@ void check_distinct(const std::vector<std::string>& files) {
     for (const std::string& file : files)
         if (!file.empty() && !file.starts_with("/dev/") && !seen.insert(std::filesystem::weakly_canonical(file)).second)
             throw UserError(fmt::format(
-                "{}: named twice; scene, image, cost image, mask, report and packets must be different files", file));
+                "{}: named twice; scene, image, cost image, mask, report, packets and trace must be different files",
+                file));
 }
 
 void check_packets(const std::string& file) {
@@ -32,7 +35,8 @@ void check_packets(const std::string& file) {
 
 void check_targets(const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
-    check_distinct({command.render.scene, command.image, command.cost, command.mask, command.report, packets});
+    check_distinct(
+        {command.render.scene, command.image, command.cost, command.mask, command.report, packets, command.trace.file});
     check_writable_target(command.image, kImageExtensions);
     if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
     if (!command.mask.empty()) check_writable_target(command.mask, kImageExtensions);
@@ -40,6 +44,14 @@ void check_targets(const RenderCommand& command) {
         throw UserError("--mask shows which pixels were supersampled: give --antialias supersample as well");
     if (!command.report.empty()) check_writable(command.report);
     if (!packets.empty()) check_packets(packets);
+}
+
+void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
+                 const std::vector<KernelWork>& works) {
+    report.measured.builds = watch.builds();
+    const DevicePeak peak =
+        watch.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
+    report.measured.roofline = roofline(peak, works, report.measured.commands);
 }
 
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene) {
@@ -55,7 +67,10 @@ ImageAttributes image_attributes(const RenderReport& report, const std::string& 
 void write_report(const RenderCommand& command, const RenderReport& report) {
     if (!command.report.empty()) write_whole_file(command.report, to_json(report).dump(2) + "\n");
     if (!command.quiet) fmt::print("{}", human_summary(report));
-    if (command.profile) fmt::print("\n{}", profile_table(report.measured.commands));
+    if (!command.profile) return;
+    const auto& measured = report.measured;
+    fmt::print("\n{}\n{}", profile_table(measured.build_s, measured.builds, measured.commands),
+               roofline_table(*measured.roofline));
 }
 
 }  // namespace raya

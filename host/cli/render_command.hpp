@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/render_options.hpp"
+#include "cli/render_watch.hpp"
 #include "cli/torus_options.hpp"
 #include "image/image_io.hpp"
 #include "report/render_report.hpp"
@@ -14,6 +15,7 @@ struct RenderCommand {
     RenderOptions render;
     TorusOptions torus;
     std::string image, cost, mask, report;
+    TraceOptions trace;
     bool profile = false, quiet = false;
 };
 
@@ -32,9 +34,13 @@ RenderReport begin_report(const RenderCommand& command, const DeviceInfo& device
     report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
     report.device = {device.name,          device.platform, device.version,
                      result.build_options, result.lanes,    result.group_size};
-    report.measured = {result.build_s, result.render_s, result.commands};
+    report.measured = {result.build_s, result.render_s, result.commands, {}, {}};
     return report;
 }
+
+/// For --profile: the builds, and the works of all kernels against the peak of `device`, which is measured now.
+void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
+                 const std::vector<KernelWork>& works);
 
 /// What every picture of a render says about itself.
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);

@@ -3,6 +3,8 @@
 #include "machine/budget.hpp"
 #include "report/progress.hpp"
 #include "ring/mapping.hpp"
+#include "ring/ring_trace.hpp"
+#include "ring/ring_work.hpp"
 #include "scene/nff_reader.hpp"
 
 namespace raya {
@@ -71,21 +73,29 @@ GreyImage grey(const CostImage& cost) {
     return {static_cast<int>(cost.width), static_cast<int>(cost.height), {cost.cycles.begin(), cost.cycles.end()}};
 }
 
-}  // namespace
-
-void render_on_ring(const RenderCommand& command) {
-    const Scene scene = read_nff(command.render.scene);
-    const RingSettings settings = ring_settings(command.render, scene);
-    Session session(choose_device(command.render.device));
-    RingRenderer renderer(session, scene, settings);
-    const RingResult result = render_with_progress(renderer, !command.quiet);
-
-    const RenderReport report = make_report(command, settings, session.device(), result);
-    const ImageAttributes attributes = image_attributes(report, scene.name);
+void write_images(const RenderCommand& command, const RingResult& result, const ImageAttributes& attributes) {
     write_image(command.image, result.image, attributes);
     if (!command.cost.empty()) write_image(command.cost, grey(result.all.cost), attributes);
     if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
-    write_report(command, report);
+}
+
+}  // namespace
+
+void render_on_ring(const RenderCommand& command) {
+    RenderWatch watch(command.trace, command.profile);
+    const Scene scene = watch.steps().during("read scene", [&] { return read_nff(command.render.scene); });
+    const RingSettings settings = ring_settings(command.render, scene);
+    const cl::Device device = choose_device(command.render.device);
+    Session session(device);
+    watch.observe(session);
+    RingRenderer renderer(session, scene, settings);
+    const RingResult result = render_with_progress(renderer, !command.quiet);
+
+    RenderReport report = make_report(command, settings, session.device(), result);
+    if (command.profile) add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result));
+    watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
+    watch.steps().during("write report", [&] { write_report(command, report); });
+    watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
 }
 
 }  // namespace raya

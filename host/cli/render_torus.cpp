@@ -9,14 +9,24 @@
 #include "scene/nff_reader.hpp"
 #include "torus/packet_trace.hpp"
 #include "torus/torus_time.hpp"
+#include "torus/torus_trace.hpp"
+#include "torus/torus_work.hpp"
 
 namespace raya {
 namespace {
 
-TorusResult render_with_progress(TorusRenderer& renderer, bool wanted, PacketTrace* trace) {
+TorusResult render_with_progress(TorusRenderer& renderer, bool wanted, PacketTrace* packets, TorusTrace* trace) {
+    PacketSink packet_sink;
+    SuperstepSink step_sink;
+    if (trace) step_sink = [trace](const SuperstepDetail& step) { trace->add_superstep(step); };
+    if (packets || trace)
+        packet_sink = [packets, trace](const PacketRecord& record) {
+            if (packets) packets->add(record);
+            if (trace) trace->add_packet(record);
+        };
     ProgressBar bar(wanted);
-    return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{},
-                           trace ? [trace](const PacketRecord& record) { trace->add(record); } : PacketSink{});
+    return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{}, packet_sink,
+                           step_sink, packets ? 1 : TorusTrace::kPacketsEvery);
 }
 
 TorusReport torus_report(const TorusSettings& settings, const TorusResult& result) {
@@ -66,18 +76,28 @@ RenderReport make_report(const RenderCommand& command, const TorusSettings& sett
 }  // namespace
 
 void render_on_torus(const RenderCommand& command) {
-    const Scene scene = read_nff(command.render.scene);
+    RenderWatch watch(command.trace, command.profile);
+    const Scene scene = watch.steps().during("read scene", [&] { return read_nff(command.render.scene); });
     const TorusSettings settings = torus_settings(command.render, command.torus, scene);
-    Session session(choose_device(command.render.device));
+    const cl::Device device = choose_device(command.render.device);
+    Session session(device);
+    watch.observe(session);
     TorusRenderer renderer(session, scene, settings);
-    std::optional<PacketTrace> trace;
-    if (!command.torus.packets.empty()) trace.emplace();
-    const TorusResult result = render_with_progress(renderer, !command.quiet, trace ? &*trace : nullptr);
+    std::optional<PacketTrace> packets;
+    std::optional<TorusTrace> trace;
+    if (!command.torus.packets.empty()) packets.emplace();
+    if (watch.traces()) trace.emplace(settings.torus);
+    const TorusResult result =
+        render_with_progress(renderer, !command.quiet, packets ? &*packets : nullptr, trace ? &*trace : nullptr);
 
-    const RenderReport report = make_report(command, settings, session.device(), result);
-    write_image(command.image, result.image, image_attributes(report, scene.name));
-    if (trace) write_whole_file(command.torus.packets, trace->finish());
-    write_report(command, report);
+    RenderReport report = make_report(command, settings, session.device(), result);
+    if (command.profile) add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result));
+    watch.steps().during("write image", [&] {
+        write_image(command.image, result.image, image_attributes(report, scene.name));
+        if (packets) write_whole_file(command.torus.packets, packets->finish());
+    });
+    watch.steps().during("write report", [&] { write_report(command, report); });
+    watch.write(session, [&](TraceFile& file) { trace->add_to(file, result, command.trace.pes); });
 }
 
 }  // namespace raya

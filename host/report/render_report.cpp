@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "machine/budget.hpp"
-#include "report/table.hpp"
+#include "report/profile_table.hpp"
 
 namespace raya {
 namespace {
@@ -77,17 +77,14 @@ Json modelled_json(const std::optional<ModelledTime>& time) {
 }
 
 Json measured_json(const RenderReport& report) {
-    Json commands = Json::array();
-    for (const LabelSummary& c : report.measured.commands) {
-        commands.push_back({{"label", c.label},
-                            {"kind", c.kind},
-                            {"launches", c.launches},
-                            {"total_ns", c.total_ns},
-                            {"min_ns", c.min_ns},
-                            {"mean_ns", c.mean_ns},
-                            {"max_ns", c.max_ns}});
-    }
-    return {{"build_s", report.measured.build_s}, {"render_s", report.measured.render_s}, {"commands", commands}};
+    const auto& m = report.measured;
+    Json json = {{"build_s", m.build_s}, {"render_s", m.render_s}};
+    json["commands"] = commands_json(m.commands, m.roofline.has_value());
+    if (!m.roofline) return json;
+    json["builds"] = builds_json(m.builds);
+    json["peak"] = peak_json(m.roofline->peak);
+    json["roofline"] = roofline_json(*m.roofline);
+    return json;
 }
 
 Json machine_json(const RenderReport& r) {
@@ -116,8 +113,6 @@ void add_torus(Json& json, const RenderReport& r) {
     json["budget"] = t805_budget_json(r.events);
     json["modelled_ms"] = torus_time_json(r.torus->modelled);
 }
-
-double ms(double ns) { return ns * 1e-6; }
 
 }  // namespace
 
@@ -228,21 +223,6 @@ std::string human_summary(const RenderReport& r) {
                         r.device.name, r.device.lanes);
     text += fmt::format("image   {} ({})\n", r.image.file, r.image.hash);
     return text;
-}
-
-std::string profile_table(const std::vector<LabelSummary>& commands) {
-    double all = 0;
-    for (const LabelSummary& c : commands) all += static_cast<double>(c.total_ns);
-    std::vector<std::vector<std::string>> rows = {
-        {"label", "kind", "launches", "total ms", "share %", "min ms", "mean ms", "max ms"}};
-    for (const LabelSummary& c : commands) {
-        const auto total = static_cast<double>(c.total_ns);
-        rows.push_back({c.label, c.kind, std::to_string(c.launches), fmt::format("{:.3f}", ms(total)),
-                        fmt::format("{:.1f}", all > 0 ? 100 * total / all : 0),
-                        fmt::format("{:.3f}", ms(static_cast<double>(c.min_ns))), fmt::format("{:.3f}", ms(c.mean_ns)),
-                        fmt::format("{:.3f}", ms(static_cast<double>(c.max_ns)))});
-    }
-    return text_table(rows);
 }
 
 }  // namespace raya

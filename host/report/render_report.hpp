@@ -13,6 +13,7 @@
 #include "machine/load.hpp"
 #include "machine/machine.hpp"
 #include "machine/time_model.hpp"
+#include "report/roofline.hpp"
 #include "report/torus_report.hpp"
 
 namespace raya {
@@ -33,6 +34,12 @@ struct AccelReport {
     std::uint64_t copies = 0;                  // of objects in several voxels
     std::uint64_t words = 0;                   // of a PE's memory that hold the grid
     std::uint64_t apart = 0;                   // large objects that every ray is tested against
+};
+
+/// The build of one program, on the host.
+struct ProgramBuild {
+    std::string name;
+    double seconds = 0;
 };
 
 struct RenderReport {
@@ -73,6 +80,8 @@ struct RenderReport {
     struct {
         double build_s = 0, render_s = 0;
         std::vector<LabelSummary> commands;
+        std::vector<ProgramBuild> builds{};  // of --profile, as the next
+        std::optional<Roofline> roofline{};
     } measured;
 };
 
@@ -84,8 +93,5 @@ nlohmann::ordered_json to_json(const RenderReport& report);
 
 /// Rays, u, efficiency and times in a few lines.
 std::string human_summary(const RenderReport& report);
-
-/// One line for each label of the measured commands: launches, total, share, min, mean, max.
-std::string profile_table(const std::vector<LabelSummary>& commands);
 
 }  // namespace raya

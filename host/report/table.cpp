@@ -9,7 +9,7 @@ namespace raya {
 namespace {
 
 bool is_number(const std::string& cell) {
-    return !cell.empty() && std::isdigit(static_cast<unsigned char>(cell.front()));
+    return cell == "-" || (!cell.empty() && std::isdigit(static_cast<unsigned char>(cell.front())));
 }
 
 // A column of numbers, header aside, stands to the right.

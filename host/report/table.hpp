@@ -5,8 +5,8 @@
 
 namespace raya {
 
-/// The rows under each other, columns two blanks apart; the first row is the header. Cells that look like numbers stand
-/// to the right.
+/// The rows under each other, columns two blanks apart; the first row is the header. Columns of numbers,
+/// or of "-" in place of one, stand to the right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace raya

@@ -4,11 +4,10 @@
 
 #include "cl/kernel_source.hpp"
 #include "kernels/kernel_options.hpp"
+#include "shared/chains.h"
 
 namespace raya {
 namespace {
-
-constexpr std::uint32_t kChains = 8;  // of kernels/number/operations.cl
 
 double last_seconds(Session& session) {
     const double ns = static_cast<double>(session.profile().summary().back().total_ns);
@@ -22,6 +21,8 @@ std::array<double, kOperations.size()> operation_rates(Session& session, const N
                                                        std::uint32_t lanes, int samples) {
     std::vector<std::string> options = format_options(format, session.device());
     options.push_back("-DRAYA_LANES=" + std::to_string(lanes));
+    const std::uint32_t group_size = default_group_size(session.device());
+    options.push_back("-DRAYA_GROUP=" + std::to_string(group_size));
     const Program program = session.build("number/operations.cl", kernel_source("number/operations.cl"), options);
     auto kernel = program.kernel<cl_uint, cl_uint, cl_float, Buffer<float>&>("operations");
     // A few items a unit on a CPU; enough to hide latencies elsewhere.
@@ -32,7 +33,7 @@ std::array<double, kOperations.size()> operation_rates(Session& session, const N
         cl_uint rounds = 1000;
         const auto seconds = [&] {
             session.clear_profile();
-            session.launch("operations", kernel, items, 1, kind, rounds, 1.0f, results);
+            session.launch("operations", kernel, items / group_size, group_size, kind, rounds, 1.0f, results);
             return last_seconds(session);
         };
         seconds();  // PoCL compiles here
@@ -40,7 +41,7 @@ std::array<double, kOperations.size()> operation_rates(Session& session, const N
         double best = 0;
         for (int i = 0; i < samples; ++i) {
             const double once = seconds();
-            if (once > 0) best = std::max(best, static_cast<double>(items) * lanes * kChains * rounds / once);
+            if (once > 0) best = std::max(best, static_cast<double>(items) * lanes * RAYA_CHAINS * rounds / once);
         }
         rates[kind] = best;
     }

@@ -32,6 +32,17 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device) {
     return settings;
 }
 
+PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings) {
+    const StepLog::Step step = session.step("pack scene");
+    return pack_job(scene, job_settings(settings));
+}
+
+AccelSummary with_grid(const Session& session, PackedJob& job, const RingSettings& settings) {
+    if (!settings.accel.grid) return {};
+    const StepLog::Step step = session.step("divide scene");
+    return append_grid(job, accel_partition(job, settings.format, settings.accel));
+}
+
 // Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress
 // bar moves, Ctrl-C is heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few wait
 // for the last.
@@ -94,9 +105,8 @@ double trace_seconds(const RingResult& result) {
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
       settings_(checked(settings, session.device())),
-      job_(pack_job(scene, job_settings(settings_))),
-      accel_(settings_.accel.grid ? append_grid(job_, accel_partition(job_, settings_.format, settings_.accel))
-                                  : AccelSummary{}),
+      job_(packed(session, scene, settings_)),
+      accel_(with_grid(session, job_, settings_)),
       share_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, {.scene = scene.name,
                                                  .job_words = job_.words.size(),
@@ -111,6 +121,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 }
 
 void RingRenderer::build(const Scene& scene) {
+    const StepLog::Step building = session_.step("set up device");
     const Clock::time_point start = Clock::now();
     const KernelOptions options = kernel_options(settings_, job_, scene, session_.device());
     const KernelChoice& choice = settings_.kernels;
@@ -152,6 +163,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
 RingResult RingRenderer::render(const ProgressCallback& progress) {
     session_.clear_profile();
     communication_ = {};
+    const StepLog::Step rendering = session_.step("render");
     const Clock::time_point start = Clock::now();
     RingResult result;
     prepare(result);
@@ -172,6 +184,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
 }
 
 void RingRenderer::prepare(RingResult& result) {
+    const StepLog::Step step = session_.step("prepare");
     const auto width = static_cast<int>(settings_.mapping.width), height = static_cast<int>(settings_.mapping.height);
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
     result.image = {width, height, std::vector<float>(3 * pixels)};
@@ -187,6 +200,7 @@ void RingRenderer::prepare(RingResult& result) {
 }
 
 void RingRenderer::trace(std::uint32_t block, const ProgressCallback& progress) {
+    const StepLog::Step step = session_.step(kTrace);
     const double passes = static_cast<double>(counters_.size());
     const PixelRange range{block, block, std::min(share_, block + memory_.block_pixels)};
     const auto report = [&](double done) { progress((block + done * (range.end - block)) / share_ / passes); };
@@ -195,6 +209,7 @@ void RingRenderer::trace(std::uint32_t block, const ProgressCallback& progress) 
 }
 
 void RingRenderer::supersample(const ProgressCallback& progress) {
+    const StepLog::Step step = session_.step(kRetrace);
     contrast_->apply(pixels_, *exchange_);
     const auto report = [&](double done) { progress((1 + done) / 2); };
     tracer_->trace(kRetrace, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(), pixels_,
@@ -202,6 +217,7 @@ void RingRenderer::supersample(const ProgressCallback& progress) {
 }
 
 void RingRenderer::gather(std::uint32_t block, RingResult& result) {
+    const StepLog::Step step = session_.step("gather");
     const raya_mapping& m = settings_.mapping;
     std::vector<float> pixels(pixels_.size());
     std::uint64_t owned = 0;
@@ -218,6 +234,7 @@ void RingRenderer::gather(std::uint32_t block, RingResult& result) {
 
 // What the kernels counted is read by the host to be reported: no transfer of the machine.
 void RingRenderer::collect_costs(std::uint32_t block, RingResult& result) {
+    const StepLog::Step step = session_.step("collect costs");
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
@@ -229,6 +246,7 @@ void RingRenderer::collect_costs(std::uint32_t block, RingResult& result) {
 }
 
 void RingRenderer::collect_marks(RingResult& result) {
+    const StepLog::Step step = session_.step("collect marks");
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
     for_each_pixel(settings_.mapping, 0, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
@@ -238,6 +256,7 @@ void RingRenderer::collect_marks(RingResult& result) {
 }
 
 void RingRenderer::collect_events(RingResult& result) {
+    const StepLog::Step step = session_.step("collect events");
     const auto cycles = cycles_of_events();
     std::vector<std::uint64_t> all(settings_.mapping.pes);
     for (std::size_t i = 0; i < counters_.size(); ++i) {
@@ -258,6 +277,7 @@ void RingRenderer::collect_events(RingResult& result) {
 // Work-groups run to their end, so what a PE takes while the machine runs cannot be seen on a device; but it follows
 // from what the pixels cost.
 void RingRenderer::simulate_schedule(RingResult& result) {
+    const StepLog::Step step = session_.step("simulate schedule");
     const Schedule schedule = dynamic_schedule(result.all.cost, settings_.mapping, *settings_.dynamic);
     result.requests = schedule.requests;
     result.all.load = result.phases.front().load = schedule.load;
@@ -268,6 +288,7 @@ void RingRenderer::describe(RingResult& result) {
     result.communication = communication_;
     result.pe_memory = memory_;
     if (settings_.accel.grid) result.accel = accel_;
+    result.words_local = tracer_->options().words_local;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
     result.build_options = tracer_->build_options();

@@ -57,6 +57,7 @@ struct RingResult {
     Communication communication;
     PeMemory pe_memory;
     std::optional<AccelSummary> accel;  // of the grid that rays walked
+    bool words_local = true;            // PEs copied the broadcast words into local memory at each launch
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
     double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it

@@ -73,6 +73,7 @@ void LinkExchange::visit_new(const NodeStatus& status,
             const std::size_t box = std::size_t{link} * nodes_ + node;
             const std::uint32_t first = sent_flags_[box] ? 0 : visited_[box];
             visited_[box] = packets;
+            if (!visit) continue;
             std::vector<std::uint32_t> words(std::size_t{packets - first} * cargo_.packet_words);
             session_.read("record", outboxes_, words, box_at(link, node) + box_words(first));
             for (std::size_t i = 0; i < words.size(); i += cargo_.packet_words) visit(node, &words[i]);

@@ -51,7 +51,8 @@ class LinkExchange {
     /// [node][link], since clear(): packets sent.
     const std::vector<std::uint64_t>& packets() const { return packets_; }
 
-    /// Calls `visit` with node and words of every packet that was put into an outbox since the last call.
+    /// Calls `visit`, if there is one, with node and words of every packet that was put into an outbox since the last
+    /// call.
     void visit_new(const NodeStatus& status,
                    const std::function<void(std::uint32_t node, const std::uint32_t* packet)>& visit);
 

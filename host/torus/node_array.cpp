@@ -144,6 +144,10 @@ void NodeArray::gather(const NodeStatus& status, std::vector<std::array<std::uin
 }
 
 void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
+    if (!sink) {
+        rays_.visit_new(status, {});
+        return homeward_.visit_new(status, {});
+    }
     std::vector<PacketRecord> records;
     const auto take = [&](std::uint32_t node, const std::uint32_t* packet) {
         if (packet[RAYA_PACKET_STATE] & RAYA_STATE_FRESH)

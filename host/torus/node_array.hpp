@@ -38,7 +38,8 @@ class NodeArray {
     /// Return packets that have reached the root since the last call are appended.
     void gather(const NodeStatus& status, std::vector<std::array<std::uint32_t, RAYA_RETURN_WORDS>>& returns);
 
-    /// Packets in the outboxes that were made or changed by the node that sends them; for a trace of the traffic.
+    /// Packets in the outboxes that were made or changed by the node that sends them; for a trace of the traffic. To be
+    /// called in every superstep; with an empty sink those of this one are left out.
     void record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     std::vector<std::uint64_t> read_events();  // [node][RAYA_EVENTS]
@@ -47,6 +48,7 @@ class NodeArray {
 
     std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear()
     const std::string& build_options() const { return build_options_; }
+    bool words_local() const { return options_.words_local; }  // kernels copy a node's words into local memory
 
   private:
     using Words = const Buffer<std::uint32_t>&;

@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "machine/t805.hpp"
+#include "torus/census.hpp"
 #include "torus/composer.hpp"
 #include "torus/node_array.hpp"
 #include "torus/windows.hpp"
@@ -31,6 +32,11 @@ JobSettings job_settings(const TorusSettings& s) {
     pixels.height = s.height;
     pixels.pes = 1;
     return {pixels, s.sampling, s.bounces, t805_cycles(), s.format};
+}
+
+PackedJob packed(const Session& session, const Scene& scene, const TorusSettings& settings) {
+    const StepLog::Step step = session.step("pack scene");
+    return pack_job(scene, job_settings(settings));
 }
 
 TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
@@ -74,36 +80,13 @@ void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob
                     sizeof windows[node]);
 }
 
-// Packets that live, or rays that have still to be made.
-struct Census {
-    std::uint64_t live = 0, full = 0, progress = 0, cycles = 0;
-    std::uint32_t fullest = 0;  // packets in the fullest queue
-    bool all_made = true;
-    double looked = 0;  // share of the rows that nodes have looked at
-};
-
-Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
-    Census c;
-    std::uint64_t rows = 0, done = 0;
-    for (std::uint32_t node = 0; node < nodes; ++node) {
-        const auto at = [&](std::uint32_t word) { return status.at(node, word); };
-        c.live += at(RAYA_STATUS_QUEUE) + at(RAYA_STATUS_HOST);
-        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-            c.live += at(RAYA_STATUS_OUTBOX + link) + at(RAYA_STATUS_INBOX + link) +
-                      at(RAYA_STATUS_RETURN_OUTBOX + link) + at(RAYA_STATUS_RETURN_INBOX + link);
-        c.fullest = std::max(c.fullest, at(RAYA_STATUS_QUEUE));
-        c.full += at(RAYA_STATUS_QUEUE) >= capacity;
-        c.progress += at(RAYA_STATUS_PROGRESS);
-        c.cycles = std::max(c.cycles, at(RAYA_STATUS_CYCLES) | std::uint64_t{at(RAYA_STATUS_CYCLES + 1)} << 32);
-        c.all_made &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
-        rows += at(RAYA_STATUS_ROWS);
-        done += at(RAYA_STATUS_NEXT_ROW);
-    }
-    c.looked = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
-    return c;
-}
-
 }  // namespace
+
+// Who is told of packets, and in which supersteps.
+struct PacketWatch {
+    PacketSink sink{};
+    std::uint32_t every = 1;
+};
 
 struct TorusRenderer::Parts {
     Session& session;
@@ -118,9 +101,10 @@ struct TorusRenderer::Parts {
     std::unique_ptr<Composer> composer{};
     double build_s = 0;
 
+    void divide(std::uint32_t lights);
     void build();
     void run(TorusResult& result, std::vector<ReturnPacket>& returns, const ProgressCallback& progress,
-             const PacketSink& sink);
+             const PacketWatch& packets, const SuperstepSink& step_sink);
     void compose(TorusResult& result, const std::vector<ReturnPacket>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
@@ -132,17 +116,21 @@ TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSe
     : parts_(new Parts{.session = session,
                        .settings = checked(settings, scene, session.device()),
                        .scene = scene.name,
-                       .job = pack_job(scene, job_settings(settings))}) {
+                       .job = packed(session, scene, settings)}) {
     Parts& p = *parts_;
-    p.partition = partition(p.job, p.settings.format, p.settings.voxels);
-    p.memories = pack_nodes(p.job, p.partition, p.settings.torus);
-    const std::uint32_t fewest =
-        raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), p.settings.bounces);
-    p.buffers = plan_buffers(scene.name, p.memories, p.settings.torus, p.settings.memory_bytes, p.settings.queue,
-                             fewest, trial_of(p.job, p.settings.format, p.settings.voxels));
-    set_windows(p.memories, p.settings, p.job, p.partition);
+    p.divide(static_cast<std::uint32_t>(scene.lights.size()));
     p.options = kernel_options(p.settings, p.job, scene);
     p.build();
+}
+
+void TorusRenderer::Parts::divide(std::uint32_t lights) {
+    const StepLog::Step step = session.step("divide scene");
+    partition = raya::partition(job, settings.format, settings.voxels);
+    memories = pack_nodes(job, partition, settings.torus);
+    buffers =
+        plan_buffers(scene, memories, settings.torus, settings.memory_bytes, settings.queue,
+                     raya_shortest_queue(lights, settings.bounces), trial_of(job, settings.format, settings.voxels));
+    set_windows(memories, settings, job, partition);
 }
 
 TorusRenderer::~TorusRenderer() = default;
@@ -150,6 +138,7 @@ TorusRenderer::~TorusRenderer() = default;
 void TorusRenderer::set_pixels(const PixelSubset& pixels) { parts_->settings.pixels = pixels; }
 
 void TorusRenderer::Parts::build() {
+    const StepLog::Step step = session.step("set up device");
     const Clock::time_point start = Clock::now();
     nodes = std::make_unique<NodeArray>(session, settings, memories, buffers, options);
     KernelOptions one_lane = options;
@@ -165,14 +154,16 @@ void TorusRenderer::Parts::build() {
     build_s = seconds_since(start);
 }
 
-TorusResult TorusRenderer::render(const ProgressCallback& progress, const PacketSink& sink) {
+TorusResult TorusRenderer::render(const ProgressCallback& progress, const PacketSink& sink,
+                                  const SuperstepSink& step_sink, std::uint32_t packets_every) {
     Parts& p = *parts_;
     p.session.clear_profile();
     const Clock::time_point start = Clock::now();
+    const StepLog::Step rendering = p.session.step("render");
     TorusResult result;
     std::vector<ReturnPacket> returns;
     try {
-        p.run(result, returns, progress, sink);
+        p.run(result, returns, progress, {sink, packets_every}, step_sink);
     } catch (const Standstill& still) {
         throw UserError(
             fmt::format("{}: the machine stands still in superstep {}: {} packets wait for each other, {} of {} queues "
@@ -190,7 +181,9 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
 }
 
 void TorusRenderer::Parts::run(TorusResult& result, std::vector<ReturnPacket>& returns,
-                               const ProgressCallback& progress, const PacketSink& sink) {
+                               const ProgressCallback& progress, const PacketWatch& packets,
+                               const SuperstepSink& step_sink) {
+    const StepLog::Step step = session.step("supersteps");
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
     bool tight = false;
@@ -202,13 +195,15 @@ void TorusRenderer::Parts::run(TorusResult& result, std::vector<ReturnPacket>& r
         nodes->route();
         const NodeStatus status = nodes->look();
         nodes->gather(status, returns);
-        if (sink) nodes->record(status, superstep, sink);
+        if (packets.sink) nodes->record(status, superstep, superstep % packets.every ? PacketSink{} : packets.sink);
         const std::vector<std::uint64_t> words = nodes->exchange(status);
         nodes->accept(tight, superstep);
 
         const Census census = census_of(status, raya_nodes(settings.torus), buffers.queue);
         const std::uint64_t most_words = *std::max_element(words.begin(), words.end());
         result.supersteps.push_back({census.cycles, most_words, census.live});
+        if (step_sink)
+            step_sink({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
         for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
         if (progress) progress(census.looked);
         if (census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made) return;
@@ -221,12 +216,15 @@ void TorusRenderer::Parts::run(TorusResult& result, std::vector<ReturnPacket>& r
 }
 
 void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<ReturnPacket>& returns) {
+    const StepLog::Step step = session.step("compose");
+    result.contributions = returns.size();
     const std::uint32_t pixels = settings.width * settings.height;
     result.image = {static_cast<int>(settings.width), static_cast<int>(settings.height),
                     composer->compose(sort_contributions(returns, pixels))};
 }
 
 void TorusRenderer::Parts::collect(TorusResult& result) {
+    const StepLog::Step step = session.step("collect");
     const std::vector<std::uint64_t> events = nodes->read_events();
     const auto cycles = t805_cycles();
     std::vector<std::uint64_t> loads(raya_nodes(settings.torus));
@@ -258,6 +256,7 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
 void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.copies = memories.copies;
     result.buffers = buffers;
+    result.copied_words = nodes->words_local() ? memories.words.size() : 0;
     std::uint64_t words = 0;
     for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
         words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
@@ -280,7 +279,7 @@ std::uint32_t TorusRenderer::Parts::long_enough_queue() {
         TorusResult result;
         std::vector<ReturnPacket> returns;
         try {
-            run(result, returns, {}, {});
+            run(result, returns, {}, {}, {});
         } catch (const Standstill&) {
             continue;
         }

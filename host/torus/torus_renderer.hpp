@@ -63,6 +63,14 @@ struct PacketRecord {
 };
 using PacketSink = std::function<void(const PacketRecord&)>;
 
+/// What every node did in one superstep.
+struct SuperstepDetail {
+    const Superstep& all;
+    std::vector<std::uint64_t> cycles;             // [node]: computing
+    const std::vector<std::uint64_t>& link_words;  // [node][RAYA_LINKS]: sent over each link
+};
+using SuperstepSink = std::function<void(const SuperstepDetail&)>;
+
 struct TorusResult {
     Image image;  // pixels outside the subset are 0
     EventCounts events{};
@@ -75,7 +83,9 @@ struct TorusResult {
     std::uint64_t queue_max = 0;              // most packets that any node's queue held
     std::uint64_t copies = 0;                 // of objects in several voxels
     NodeBuffers buffers;
-    std::uint64_t node_bytes = 0;  // of the fullest node: words and buffers
+    std::uint64_t node_bytes = 0;     // of the fullest node: words and buffers
+    std::uint64_t copied_words = 0;   // of the scene, by all nodes into local memory, whenever a kernel starts
+    std::uint64_t contributions = 0;  // return packets that reached the host
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
     double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
@@ -90,8 +100,11 @@ class TorusRenderer {
     ~TorusRenderer();
 
     /// One image; may be called again. `sink`, where given, is told of every packet between nodes, in the order of
-    /// supersteps, then sources. UserError where the machine stands still, with a queue that is long enough.
-    TorusResult render(const ProgressCallback& progress = {}, const PacketSink& sink = {});
+    /// supersteps, then sources, or of those of supersteps 0, `packets_every`, ... alone, since telling takes time;
+    /// `step_sink` of every superstep. UserError where the machine stands still, with a queue
+    /// that is long enough.
+    TorusResult render(const ProgressCallback& progress = {}, const PacketSink& sink = {},
+                       const SuperstepSink& step_sink = {}, std::uint32_t packets_every = 1);
 
     /// Other pixels for the images that follow: groups of a machine render in turn without building anew.
     void set_pixels(const PixelSubset& pixels);

@@ -3,8 +3,11 @@
 // Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that what is measured is how many the
 // device can do, not how long one takes. The results are stored so that no compiler leaves the work out.
 #include "number/number.clh"
+#include "shared/chains.h"
 
-#define RAYA_CHAINS 8
+#ifndef RAYA_GROUP
+#define RAYA_GROUP 1  // L: work-items in a work-group, 1..64
+#endif
 
 // Written out, chain by chain: an array with a loop would stay in memory.
 #define RAYA_ALL_CHAINS(step) step(0) step(1) step(2) step(3) step(4) step(5) step(6) step(7)
@@ -16,7 +19,7 @@
 #define RAYA_DIVIDE(k) a[k] = num_div(x, a[k]);
 #define RAYA_SQRT(k) a[k] = num_sqrt(a[k]);
 
-__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void operations(const uint kind,                    // 0 add, 1 multiply, 2 multiply-accumulate, 3 divide, 4 square root
                 const uint rounds,                  // repetitions of each chain
                 const float start,                  // operand, about 1

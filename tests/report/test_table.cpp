@@ -19,6 +19,13 @@ TEST_CASE("one cell that is no number makes a column of words", "[report]") {
           "b     none\n");
 }
 
+TEST_CASE("a dash stands for a number that is not there", "[report]") {
+    CHECK(text_table({{"name", "time"}, {"a", "1.5"}, {"b", "-"}}) ==
+          "name  time\n"
+          "a      1.5\n"
+          "b        -\n");
+}
+
 TEST_CASE("short rows, wide headers and the header alone", "[report]") {
     CHECK(text_table({{"a", "b"}, {"long word"}, {"x", "7"}}) ==
           "a          b\n"

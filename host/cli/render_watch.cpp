@@ -1,0 +1,83 @@
+#include "cli/render_watch.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cl/clock_anchor.hpp"
+#include "error.hpp"
+#include "report/session_trace.hpp"
+#include "report/whole_file.hpp"
+
+namespace raya {
+namespace {
+
+// How Session names the steps that are builds.
+constexpr std::string_view kBuild = "build ";
+
+}  // namespace
+
+void add_trace_options(CLI::App& command, TraceOptions& trace) {
+    command
+        .add_option(
+            "--trace", trace.file,
+            "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
+            "machine in modelled time")
+        ->type_name("FILE.json[.gz]");
+    command
+        .add_option("--trace-events", trace.events,
+                    "Events in the trace at most, 1 or more; how many were left out is said at the end")
+        ->type_name("N")
+        ->capture_default_str();
+    command
+        .add_option("--trace-pes", trace.pes,
+                    "PEs or nodes of the modelled machine with tracks of their own: a quarter of them the busiest, a "
+                    "quarter the idlest, the others spread evenly; 0: no modelled machine")
+        ->type_name("N")
+        ->capture_default_str();
+}
+
+void check_trace(const CLI::App& command, const TraceOptions& trace) {
+    if (trace.file.empty()) {
+        for (const char* option : {"--trace-events", "--trace-pes"})
+            if (command.count(option) > 0)
+                throw UserError(fmt::format("{} says how to trace: give --trace FILE.json as well", option));
+        return;
+    }
+    if (trace.events == 0) throw UserError("--trace-events 0: must be 1 or more");
+    if (!trace.file.ends_with(".json") && !trace.file.ends_with(".json.gz") && !trace.file.starts_with("/dev/"))
+        throw UserError(
+            fmt::format("--trace {}: let the name end in .json, or in .json.gz to be compressed", trace.file));
+    check_writable(trace.file);
+}
+
+RenderWatch::RenderWatch(const TraceOptions& trace, bool profile) : trace_(trace), profile_(profile) {}
+
+void RenderWatch::observe(Session& session) {
+    if (!traces() && !profile_) return;
+    session.observe(steps_, traces() ? trace_.events : 0);
+    if (traces() && session.profile().timed()) anchor_ = clock_anchor(session);
+}
+
+std::vector<ProgramBuild> RenderWatch::builds() const {
+    std::vector<ProgramBuild> builds;
+    for (const HostStep& s : steps_.steps())
+        if (s.name.starts_with(kBuild))
+            builds.push_back({s.name.substr(kBuild.size()), 1e-9 * static_cast<double>(s.ended - s.started)});
+    return builds;
+}
+
+void RenderWatch::write(Session& session, const std::function<void(TraceFile&)>& add_machine) {
+    if (!traces()) return;
+    TraceFile file(trace_.events);
+    file.metadata()["program"] = "raya " RAYA_VERSION;
+    add_host_steps(file, steps_.steps(), begin_);
+    add_device_commands(file, session.device().name, session.profile(), anchor_, begin_);
+    add_machine(file);
+    write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));
+    if (file.left_out() > 0)
+        fmt::print(stderr, "raya: {}: {} events are left out of {}; remedy: --trace-events {}, or fewer --trace-pes\n",
+                   trace_.file, file.left_out(), file.events() + file.left_out(), file.events() + file.left_out());
+}
+
+}  // namespace raya

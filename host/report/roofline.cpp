@@ -1,0 +1,155 @@
+#include "report/roofline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "machine/budget.hpp"
+#include "report/table.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double number(std::uint64_t count) { return static_cast<double>(count); }
+
+double of_time(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
+
+// Seconds of the operations at the format's own rates.
+double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
+    return number(w.operations) / peak.multiply_per_s + number(w.divisions) / peak.divide_per_s +
+           number(w.roots) / peak.root_per_s;
+}
+
+RooflineRow row_of(const KernelWork& work, double seconds, const DevicePeak& peak) {
+    RooflineRow row{.work = work, .seconds = seconds};
+    const double operations = number(work.all_operations()), bytes = number(work.bytes);
+    row.intensity = bytes > 0 ? operations / bytes : 0;
+    const double computing = operations / peak.fp32_per_s, moving = bytes / peak.copy_bytes_per_s;
+    row.bound = computing >= moving ? Bound::kCompute : Bound::kBandwidth;
+    row.share = std::max(computing, moving) / seconds;
+    if (operations > 0) row.of_format = seconds_in_format(work, peak) / seconds;
+    return row;
+}
+
+bool is_known(const DevicePeak& p) {
+    return p.fp32_per_s > 0 && p.multiply_per_s > 0 && p.divide_per_s > 0 && p.root_per_s > 0 && p.copy_bytes_per_s > 0;
+}
+
+const char* bound_name(Bound bound) { return bound == Bound::kCompute ? "compute" : "bandwidth"; }
+
+std::string percent(double share) { return fmt::format("{:.2f}", 100 * share); }
+
+// A cell that says nothing where there is nothing to say.
+std::string cell(double value, const std::string& text) { return value > 0 ? text : "-"; }
+
+std::vector<std::string> cells_of(const RooflineRow& r) {
+    const double operations = number(r.work.all_operations()), rays = number(r.work.rays), bytes = number(r.work.bytes);
+    return {r.work.label,
+            cell(rays, fmt::format("{:.2f}", 1e-6 * of_time(rays, r.seconds))),
+            cell(operations, fmt::format("{:.4f}", 1e-9 * operations)),
+            cell(operations, fmt::format("{:.3f}", 1e-9 * of_time(operations, r.seconds))),
+            cell(bytes, fmt::format("{:.3f}", 1e-6 * bytes)),
+            cell(bytes, fmt::format("{:.3f}", 1e-9 * of_time(bytes, r.seconds))),
+            cell(r.intensity, fmt::format("{:.3g}", r.intensity)),
+            bound_name(r.bound),
+            percent(r.share),
+            r.of_format ? percent(*r.of_format) : "-"};
+}
+
+std::string peak_lines(const DevicePeak& p) {
+    return fmt::format(
+        "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, {:.2f} roots; "
+        "{:.2f} GB/s copied\n"
+        "        measured just now by small programs; copies read and write {} MB\n"
+        "op      an addition, multiplication, comparison, multiply-add, division or root of the budgets of the events "
+        "that were counted\n"
+        "MB      the fewest that the kernel has to read and write. The roof is compute above {:.2f} op/byte, else "
+        "bandwidth\n",
+        1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.root_per_s,
+        1e-9 * p.copy_bytes_per_s, p.copy_bytes >> 20, p.fp32_per_s / p.copy_bytes_per_s);
+}
+
+std::string format_remark(const DevicePeak& p) {
+    const std::string text =
+        "format  the time that the same operations take at the rates of " + p.format + ", in % of the kernel's";
+    if (p.format == "fp32") return text + "\n";
+    return text +
+           "; one of them is many instructions;\n"
+           "        above 100 % where most are had for less: comparisons, and spheres that the filter in fp32 rules "
+           "out\n";
+}
+
+// Which roof, what share of it.
+std::string verdict(const RooflineRow& r, const DevicePeak& p) {
+    const bool compute = r.bound == Bound::kCompute;
+    std::string line = fmt::format("roof    {}: {} bound, {:.2f} % of {}", r.work.label, bound_name(r.bound),
+                                   100 * r.share, compute ? "the fp32 multiply-add rate" : "the copy bandwidth");
+    if (r.of_format) line += fmt::format(", {:.2f} % of {}'s own rates", 100 * *r.of_format, p.format);
+    return line + "\n";
+}
+
+}  // namespace
+
+KernelWork work_of(const std::string& label, const EventCounts& events) {
+    const Operations sum = operations_of(events);
+    return {.label = label,
+            .rays = events[RAYA_PRIMARY] + events[RAYA_REFLECTED] + events[RAYA_REFRACTED] + events[RAYA_SHADOW],
+            .operations = sum.multiply_accumulates,
+            .divisions = sum.divisions,
+            .roots = sum.roots};
+}
+
+Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
+                  const std::vector<LabelSummary>& commands) {
+    Roofline all{.peak = peak, .rows = {}};
+    if (!is_known(peak)) return all;
+    for (const KernelWork& work : works)
+        for (const LabelSummary& c : commands)
+            if (c.label == work.label && c.kind == "kernel" && c.total_ns > 0)
+                all.rows.push_back(row_of(work, 1e-9 * number(c.total_ns), peak));
+    return all;
+}
+
+std::string roofline_table(const Roofline& roofline) {
+    if (!is_known(roofline.peak)) return "the device does not time its commands, so there is no roofline\n";
+    std::vector<std::vector<std::string>> rows = {
+        {"kernel", "Mrays/s", "Gop", "Gop/s", "MB", "GB/s", "op/byte", "bound", "% of roof", "% of format"}};
+    for (const RooflineRow& row : roofline.rows) rows.push_back(cells_of(row));
+    std::string text = text_table(rows) + peak_lines(roofline.peak) + format_remark(roofline.peak);
+    for (const RooflineRow& row : roofline.rows) text += verdict(row, roofline.peak);
+    return text;
+}
+
+Json peak_json(const DevicePeak& p) {
+    return {{"fp32_multiply_adds_per_s", p.fp32_per_s},
+            {"format", p.format},
+            {"format_multiply_adds_per_s", p.multiply_per_s},
+            {"format_divisions_per_s", p.divide_per_s},
+            {"format_roots_per_s", p.root_per_s},
+            {"copy_bytes_per_s", p.copy_bytes_per_s},
+            {"copy_buffer_bytes", p.copy_bytes}};
+}
+
+Json roofline_json(const Roofline& roofline) {
+    Json rows = Json::array();
+    for (const RooflineRow& r : roofline.rows) {
+        const double operations = number(r.work.all_operations());
+        rows.push_back({{"label", r.work.label},
+                        {"rays", r.work.rays},
+                        {"rays_per_s", of_time(number(r.work.rays), r.seconds)},
+                        {"operations", r.work.all_operations()},
+                        {"operations_per_s", of_time(operations, r.seconds)},
+                        {"bytes", r.work.bytes},
+                        {"bytes_per_s", of_time(number(r.work.bytes), r.seconds)},
+                        {"operations_per_byte", r.intensity},
+                        {"bound", bound_name(r.bound)},
+                        {"share_of_roof", r.share},
+                        {"share_of_format", r.of_format ? Json(*r.of_format) : Json()}});
+    }
+    return rows;
+}
+
+}  // namespace raya

@@ -1,0 +1,99 @@
+#include "report/session_trace.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace raya {
+namespace {
+
+using Json = TraceFile::Json;
+
+constexpr TraceTrack kSteps = {kTraceHost, 1};
+
+// Times of one device on the trace's.
+class DeviceTimes {
+  public:
+    DeviceTimes(const ClockAnchor& anchor, std::uint64_t begin)
+        : shift_(anchor.offset_ns - static_cast<std::int64_t>(begin)) {}
+
+    std::uint64_t at(std::uint64_t device_ns, std::uint64_t not_before) {
+        const std::int64_t shifted = static_cast<std::int64_t>(device_ns) + shift_;
+        if (shifted >= static_cast<std::int64_t>(not_before)) return static_cast<std::uint64_t>(shifted);
+        ++moved_;
+        return not_before;
+    }
+    std::uint64_t moved() const { return moved_; }
+
+  private:
+    std::int64_t shift_;
+    std::uint64_t moved_ = 0;
+};
+
+Json arguments_of(const CommandRecord& c) {
+    Json json = {{"kind", c.kind}};
+    json[c.kind == "kernel" ? "kernel" : "buffer"] = c.object;
+    if (c.kind == "kernel") {
+        json["groups"] = c.groups;
+        json["group_size"] = c.group_size;
+        for (const ArgumentText& a : c.arguments) json["arguments"][a.name] = a.value;
+    } else {
+        json["bytes"] = c.bytes;
+    }
+    json["queued_ns"] = c.queued;
+    json["submitted_ns"] = c.submitted;
+    json["started_ns"] = c.started;
+    json["ended_ns"] = c.ended;
+    return json;
+}
+
+// The first track that is free at `start`; a new one where none is.
+std::uint32_t free_track(TraceFile& trace, std::vector<std::uint64_t>& busy_until, std::uint64_t start) {
+    const auto found =
+        std::find_if(busy_until.begin(), busy_until.end(), [&](std::uint64_t end) { return end <= start; });
+    const auto track = static_cast<std::uint32_t>(found - busy_until.begin()) + 1;
+    if (found == busy_until.end()) {
+        busy_until.push_back(0);
+        trace.name_track({kTraceDevice, track}, track == 1 ? "queue" : fmt::format("queue, overlapping {}", track));
+    }
+    return track;
+}
+
+Json clock_json(const ClockAnchor& anchor) {
+    return {
+        {"same_as_host", anchor.same_clock},
+        {"offset_ns", anchor.offset_ns},
+        {"uncertainty_ns", anchor.uncertainty_ns},
+        {"note", anchor.same_clock ? "device times are by the host's clock (CLOCK_MONOTONIC_RAW)"
+                                   : "host time = device time + offset, from one command given between two looks at "
+                                     "the host's clock; drift is not corrected"}};
+}
+
+}  // namespace
+
+void add_host_steps(TraceFile& trace, const std::vector<HostStep>& steps, std::uint64_t begin) {
+    trace.name_process(kTraceHost, "host (measured)");
+    trace.name_track(kSteps, "steps");
+    for (const HostStep& s : steps) trace.slice(kSteps, s.name, s.started - begin, s.ended - begin);
+}
+
+void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockAnchor& anchor,
+                         std::uint64_t begin) {
+    if (!profile.timed()) {
+        trace.metadata()["device"] = "left out: the device does not time its commands";
+        return;
+    }
+    trace.name_process(kTraceDevice, fmt::format("device: {} (measured)", device));
+    DeviceTimes times(anchor, begin);
+    std::vector<std::uint64_t> busy_until;
+    for (const CommandRecord& c : profile.commands()) {
+        const std::uint64_t start = times.at(c.started, 0), end = times.at(c.ended, start);
+        const std::uint32_t track = free_track(trace, busy_until, start);
+        trace.slice({kTraceDevice, track}, c.label, start, end, arguments_of(c));
+        busy_until[track - 1] = end;
+    }
+    trace.metadata()["device_clock"] = clock_json(anchor);
+    if (times.moved() > 0) trace.metadata()["device_times_moved"] = times.moved();
+}
+
+}  // namespace raya

@@ -1,0 +1,116 @@
+#include "report/trace_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "report/gzip.hpp"
+
+namespace raya {
+namespace {
+
+std::string json_text(const TraceFile::Json& json) {
+    return json.dump(-1, ' ', false, TraceFile::Json::error_handler_t::replace);  // a driver's name may be in any code
+}
+
+std::string microseconds(std::uint64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
+
+std::string named(const char* what, TraceTrack track, const TraceFile::Json& arguments) {
+    return fmt::format(R"({{"ph":"M","name":"{}","pid":{},"tid":{},"args":{}}})", what, track.process, track.thread,
+                       json_text(arguments));
+}
+
+}  // namespace
+
+void TraceFile::name_process(std::uint32_t process, const std::string& name) {
+    names_ += named("process_name", {process, 0}, {{"name", name}}) + ",\n";
+    names_ += named("process_sort_index", {process, 0}, {{"sort_index", process}}) + ",\n";
+}
+
+void TraceFile::name_track(TraceTrack track, const std::string& name) {
+    names_ += named("thread_name", track, {{"name", name}}) + ",\n";
+    names_ += named("thread_sort_index", track, {{"sort_index", track.thread}}) + ",\n";
+    open_[track];
+}
+
+// Whether there is room for so many more.
+bool TraceFile::take(std::size_t events) {
+    const bool fits = events <= most_events_ - events_;
+    (fits ? events_ : left_out_) += events;
+    return fits;
+}
+
+void TraceFile::check_named(TraceTrack track) const {
+    if (!open_.contains(track))
+        throw std::logic_error(fmt::format("trace: track {} of process {} has no name", track.thread, track.process));
+}
+
+void TraceFile::add(const std::string& event) { text_ += event + ",\n"; }
+
+void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t start, std::uint64_t end,
+                      const Json& arguments) {
+    check_named(track);
+    if (!take(1)) return;
+    std::vector<std::uint64_t>& ends = open_.at(track);
+    while (!ends.empty() && ends.back() <= start) ends.pop_back();
+    std::uint64_t& last = last_start_[track];
+    if (end < start || start < last || (!ends.empty() && end > ends.back()))
+        throw std::logic_error(fmt::format("trace: slice '{}' from {} to {} crosses another one", name, start, end));
+    last = start;
+    ends.push_back(end);
+    add(fmt::format(R"({{"ph":"X","name":{},"pid":{},"tid":{},"ts":{},"dur":{},"args":{}}})", json_text(name),
+                    track.process, track.thread, microseconds(start), microseconds(end - start),
+                    arguments.is_null() ? "{}" : json_text(arguments)));
+}
+
+void TraceFile::counter(std::uint32_t process, const std::string& name, std::uint64_t at,
+                        const std::vector<std::pair<std::string, double>>& values) {
+    if (!take(1)) return;
+    Json arguments = Json::object();
+    for (const auto& [series, value] : values) {
+        if (!std::isfinite(value)) throw std::logic_error(fmt::format("trace: counter '{}' is {}", name, value));
+        arguments[series] = value;
+    }
+    add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", json_text(name), process, microseconds(at),
+                    json_text(arguments)));
+}
+
+void TraceFile::flow(const std::string& name, TraceTrack from, std::uint64_t from_at, TraceTrack to,
+                     std::uint64_t to_at) {
+    check_named(from);
+    check_named(to);
+    if (to_at < from_at) throw std::logic_error(fmt::format("trace: flow '{}' goes back in time", name));
+    if (!take(2)) return;
+    ++flows_;
+    const auto end = [&](const char* phase, TraceTrack track, std::uint64_t at) {
+        add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase,
+                        json_text(name), flows_, track.process, track.thread, microseconds(at)));
+    };
+    end(R"("s")", from, from_at);
+    end(R"("f","bp":"e")", to, to_at);
+}
+
+std::string TraceFile::head() const { return "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n"; }
+
+std::string TraceFile::tail() const {
+    Json about = metadata_;
+    about["events"] = events_;
+    about["events_left_out"] = left_out_;
+    return "\n],\"otherData\":" + json_text(about) + "}\n";
+}
+
+std::string TraceFile::finish(bool compressed) const {
+    std::string_view names = names_, text = text_;
+    (text.empty() ? names : text).remove_suffix(text.empty() && names.empty() ? 0 : 2);  // no comma after the last
+    const std::string first = head(), last = tail();
+    if (!compressed) return fmt::format("{}{}{}{}", first, names, text, last);
+    GzipText file;
+    for (const std::string_view part : {std::string_view(first), names, text, std::string_view(last)})
+        file.append(part);
+    return file.finish();
+}
+
+}  // namespace raya

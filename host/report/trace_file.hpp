@@ -1,0 +1,73 @@
+// Writes one trace in Chrome's JSON format, as Perfetto and chrome://tracing read it. Knows nothing of what is traced.
+//
+// What readers ask for, and what is held here: processes and tracks are whole numbers, named by records that stand
+// before all others; times are microseconds, with three decimals; slices of one track lie within each other or one
+// after another; either end of a flow lies in a slice.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace raya {
+
+/// The processes of a raya trace, in the order in which they are shown.
+enum TraceProcess : std::uint32_t { kTraceHost = 1, kTraceDevice = 2, kTraceMachine = 3 };
+
+/// A row of slices.
+struct TraceTrack {
+    std::uint32_t process = 0, thread = 0;
+    auto operator<=>(const TraceTrack&) const = default;
+};
+
+/// All times are nanoseconds from the trace's beginning. std::logic_error for a track that has no name yet, a slice
+/// that ends before it begins or crosses another one. Holds the text in memory: about 150 bytes for each event.
+class TraceFile {
+  public:
+    using Json = nlohmann::ordered_json;
+
+    /// `most_events`: slices, counters and ends of flows; what comes after so many is left out and counted.
+    explicit TraceFile(std::size_t most_events) : most_events_(most_events) {}
+
+    /// Processes and tracks are shown in the order of their numbers.
+    void name_process(std::uint32_t process, const std::string& name);
+    void name_track(TraceTrack track, const std::string& name);
+
+    /// Slices of a track come in the order of their starts, the outer one first.
+    void slice(TraceTrack track, const std::string& name, std::uint64_t start, std::uint64_t end,
+               const Json& arguments = {});
+
+    /// The values of a counter's series from `at` on.
+    void counter(std::uint32_t process, const std::string& name, std::uint64_t at,
+                 const std::vector<std::pair<std::string, double>>& values);
+
+    /// An arrow between the slices that lie there on the two tracks at the two times.
+    void flow(const std::string& name, TraceTrack from, std::uint64_t from_at, TraceTrack to, std::uint64_t to_at);
+
+    /// What the trace says of itself.
+    Json& metadata() { return metadata_; }
+
+    std::size_t events() const { return events_; }
+    std::size_t left_out() const { return left_out_; }
+
+    /// The file, compressed with gzip if `compressed`.
+    std::string finish(bool compressed) const;
+
+  private:
+    bool take(std::size_t events);
+    void check_named(TraceTrack track) const;
+    void add(const std::string& event);
+    std::string head() const;
+    std::string tail() const;
+
+    std::size_t most_events_, events_ = 0, left_out_ = 0, flows_ = 0;
+    std::map<TraceTrack, std::vector<std::uint64_t>> open_;  // of each track: where the slices end that are open
+    std::map<TraceTrack, std::uint64_t> last_start_;
+    std::string names_, text_;
+    Json metadata_ = Json::object();
+};
+
+}  // namespace raya

@@ -1,0 +1,53 @@
+#include "ring/device_peak.hpp"
+
+#include <algorithm>
+
+#include "cl/commands.hpp"
+#include "kernels/kernel_options.hpp"
+#include "ring/operation_rates.hpp"
+
+namespace raya {
+namespace {
+
+constexpr int kSamples = 5;
+constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // of kOperations
+
+// Two buffers, an eighth of the memory at most.
+std::uint64_t copied_bytes(const DeviceInfo& device) {
+    constexpr std::uint64_t kEnough = 256u << 20;
+    return std::min({kEnough, device.max_allocation_bytes, device.global_memory_bytes / 16});
+}
+
+double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
+    Buffer<std::uint8_t> from = session.buffer<std::uint8_t>("peak, from", bytes),
+                         to = session.buffer<std::uint8_t>("peak, to", bytes);
+    session.fill("peak", from, 1);  // memory that nobody has written to may not be there yet
+    session.fill("peak", to, 2);
+    session.clear_profile();
+    for (int i = 0; i < kSamples; ++i) session.copy("peak", from, 0, to, 0, bytes);
+    const std::uint64_t least_ns = session.profile().summary().front().min_ns;
+    return least_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(least_ns) : 0;
+}
+
+}  // namespace
+
+DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes) {
+    Session session(device);
+    DevicePeak peak;
+    peak.format = format_name(format);
+    if (!session.profile().timed()) return peak;
+    const NumberFormat fp32 = parse_format("fp32");
+    const std::uint32_t widest = default_lanes(session.device());
+    const auto rates = operation_rates(session, format, lanes, kSamples);
+    peak.multiply_per_s = rates[kMultiplyAdd];
+    peak.fp32_per_s = format == fp32 && lanes == widest
+                          ? peak.multiply_per_s
+                          : operation_rates(session, fp32, widest, kSamples)[kMultiplyAdd];
+    peak.divide_per_s = rates[kDivide];
+    peak.root_per_s = rates[kRoot];
+    peak.copy_bytes = copied_bytes(session.device());
+    peak.copy_bytes_per_s = copy_bytes_per_s(session, peak.copy_bytes);
+    return peak;
+}
+
+}  // namespace raya

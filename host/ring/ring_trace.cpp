@@ -1,0 +1,154 @@
+#include "ring/ring_trace.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "machine/budget.hpp"
+#include "report/traced_pes.hpp"
+#include "ring/mapping.hpp"
+
+namespace raya {
+namespace {
+
+using Json = TraceFile::Json;
+
+constexpr TraceTrack kPhases = {kTraceMachine, 1};
+constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above", "below"};
+
+std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(std::llround(ms * 1e6)); }
+
+// Puts one phase behind the other.
+class RingTimeline {
+  public:
+    RingTimeline(TraceFile& trace, const Machine& machine, std::vector<TracedPe> pes)
+        : trace_(trace), cycle_ms_(1e-6 * *machine.cycle_ns), pes_(std::move(pes)) {
+        trace.name_process(kTraceMachine, machine.name + " (modelled time)");
+        trace.name_track(kPhases, "phases");
+        for (const TracedPe& p : pes_) trace.name_track(track_of(p), traced_pe_name("PE", p));
+    }
+
+    // All PEs at once. `times` > 1: so many in turn, shown within it.
+    void together(const std::string& name, double ms, const Json& arguments, std::uint64_t times = 1) {
+        const double begin = now_ms_;
+        phase(name, ms, arguments);
+        for (const TracedPe& p : pes_) {
+            trace_.slice(track_of(p), name, nanoseconds(begin), nanoseconds(now_ms_));
+            const double each = ms / static_cast<double>(times);
+            const auto at = [&](std::uint64_t n) { return nanoseconds(begin + each * static_cast<double>(n)); };
+            for (std::uint64_t i = 0; times > 1 && i < times; ++i)
+                trace_.slice(track_of(p), "rotation", at(i), i + 1 < times ? at(i + 1) : nanoseconds(now_ms_));
+        }
+    }
+
+    // Every PE its own cycles, then it waits for the busiest.
+    void compute(const std::string& name, const Load& load) {
+        const double begin = now_ms_;
+        const auto busiest = std::max_element(load.per_pe.begin(), load.per_pe.end()) - load.per_pe.begin();
+        const Json about = {
+            {"u", load.imbalance}, {"mean_cycles", load.mean}, {"max_cycles", load.max}, {"busiest", busiest}};
+        trace_.counter(kTraceMachine, "u", nanoseconds(begin), {{"u", load.imbalance}});
+        phase(name, cycle_ms_ * static_cast<double>(load.max), about);
+        const std::string wait = fmt::format("wait for PE {}", busiest);
+        for (const TracedPe& p : pes_) {
+            const std::uint64_t cycles = load.per_pe[p.pe];
+            const std::uint64_t done = nanoseconds(begin + cycle_ms_ * static_cast<double>(cycles));
+            if (cycles > 0) trace_.slice(track_of(p), name, nanoseconds(begin), done, {{"cycles", cycles}});
+            if (cycles < load.max)
+                trace_.slice(track_of(p), wait, done, nanoseconds(now_ms_), {{"cycles", load.max - cycles}});
+        }
+    }
+
+    // A PE of this machine follows one ray at a time, so rays that live are PEs that trace.
+    void trace_rays(const std::string& name, const Load& load) {
+        constexpr std::size_t kMostPoints = 512;
+        std::vector<std::uint64_t> ends = load.per_pe;
+        std::sort(ends.begin(), ends.end());
+        const std::size_t step = (ends.size() + kMostPoints - 1) / kMostPoints;
+        count_rays(0, static_cast<double>(ends.end() - std::upper_bound(ends.begin(), ends.end(), 0u)));
+        for (std::size_t i = 0; i < ends.size(); i += step) {
+            const std::size_t last = std::min(i + step, ends.size()) - 1;
+            if (ends[last] > 0) count_rays(ends[last], static_cast<double>(ends.size() - 1 - last));
+        }
+        compute(name, load);
+    }
+
+  private:
+    static TraceTrack track_of(const TracedPe& p) { return {kTraceMachine, p.pe + 2}; }
+
+    void count_rays(std::uint64_t cycles, double rays) {
+        trace_.counter(kTraceMachine, "live rays", nanoseconds(now_ms_ + cycle_ms_ * static_cast<double>(cycles)),
+                       {{"rays", rays}});
+    }
+
+    void phase(const std::string& name, double ms, const Json& arguments) {
+        trace_.slice(kPhases, name, nanoseconds(now_ms_), nanoseconds(now_ms_ + ms), arguments);
+        now_ms_ += ms;
+    }
+
+    TraceFile& trace_;
+    double cycle_ms_, now_ms_ = 0;
+    std::vector<TracedPe> pes_;
+};
+
+// A quarter of the cycles that each PE spends on its own pixels, the quarters' sum being all of them.
+Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), std::uint32_t side) {
+    std::vector<std::uint64_t> cycles;
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const std::uint64_t all = cycles_of(raya_share_size(raya_share_of(m, pe)));
+        cycles.push_back(all * (side + 1) / RAYA_SIDES - all * side / RAYA_SIDES);
+    }
+    return load_of(std::move(cycles));
+}
+
+std::uint64_t rotations_of(const raya_mapping& m, const PeMemory& memory, std::uint32_t side) {
+    std::uint64_t turns = 0;
+    for (const Leg& leg : shortest_route(m.pes, neighbour_distances(m, side))) turns += leg.turns();
+    return turns * ((memory.block_pixels + memory.band_pixels - 1) / memory.band_pixels);
+}
+
+void add_smoothing(RingTimeline& line, const RingSettings& s, const RingResult& r, double rotation_ms) {
+    const bool filter = s.antialias.method == AntialiasMethod::kFilter;
+    for (std::uint32_t side = 0; side < RAYA_SIDES; ++side) {
+        const std::uint64_t turns = rotations_of(s.mapping, r.pe_memory, side);
+        if (turns > 0)
+            line.together(fmt::format("rotate, for neighbours {}", kSides[side]),
+                          rotation_ms * static_cast<double>(turns), {{"rotations", turns}}, turns);
+        line.compute(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
+                     quarter(s.mapping, filter ? filter_cycles : compare_cycles, side));
+    }
+}
+
+}  // namespace
+
+void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes) {
+    std::vector<Load> loads;
+    for (const Phase& phase : result.phases) loads.push_back(phase.load);
+    const Communication& c = result.communication;
+    const auto time = modelled_time(settings.machine, loads, c, 1,
+                                    smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
+    if (!time || pes == 0) {
+        trace.metadata()["machine"] =
+            time ? "left out: no PE was asked for"
+                 : fmt::format("left out: {} has no modelled time, as its rates are not known", settings.machine.name);
+        return;
+    }
+    RingTimeline line(trace, settings.machine, traced_pes(result.all.load.per_pe, pes));
+    line.together("broadcast", time->objects_ms, {{"words", c.broadcast_words}});
+    line.trace_rays(result.phases[0].name, result.phases[0].load);
+    if (settings.antialias.method != AntialiasMethod::kNone)
+        add_smoothing(line, settings, result,
+                      c.rotations > 0 ? time->communication_ms / static_cast<double>(c.rotations) : 0);
+    if (result.phases.size() > 1) line.trace_rays(result.phases[1].name, result.phases[1].load);
+    line.together("gather", time->image_ms, {{"words", c.gather_words}});
+    trace.metadata()["machine"] = {{"name", settings.machine.name},
+                                   {"modelled_ms", time->total_ms},
+                                   {"pes", settings.mapping.pes},
+                                   {"note",
+                                    "modelled time, from the trace's time 0 on; it has nothing to do with the "
+                                    "measured times above it"}};
+}
+
+}  // namespace raya

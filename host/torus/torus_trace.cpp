@@ -1,0 +1,165 @@
+#include "torus/torus_trace.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "machine/t805.hpp"
+#include "report/traced_pes.hpp"
+#include "torus/packet_trace.hpp"
+
+namespace raya {
+namespace {
+
+using Json = TraceFile::Json;
+
+constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
+constexpr std::uint32_t kFirstNode = 2;  // track of node 0
+
+double cycles_ms(std::uint64_t cycles) { return 1e-6 * kT805CycleNs * static_cast<double>(cycles); }
+double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }  // as torus_time() has it
+std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(std::llround(ms * 1e6)); }
+TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNode + node}; }
+
+// Links on the way of a packet.
+std::uint32_t way(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
+    return raya_node_distance(torus, source, destination);  // returns take the sides in another order, as many links
+}
+
+}  // namespace
+
+void TorusTrace::add_superstep(const SuperstepDetail& step) {
+    std::vector<NodeStep> nodes(step.cycles.size());
+    for (std::size_t node = 0; node < nodes.size(); ++node) {
+        nodes[node].cycles = step.cycles[node];
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
+            const auto words = static_cast<std::uint32_t>(step.link_words[node * RAYA_LINKS + link]);
+            nodes[node].words += words;
+            nodes[node].link_words = std::max(nodes[node].link_words, words);
+        }
+    }
+    steps_.push_back(std::move(nodes));
+}
+
+// Reservoir sampling (J. S. Vitter, "Random Sampling with a Reservoir", 1985, algorithm R).
+void TorusTrace::add_packet(const PacketRecord& p) {
+    const Sample sample = {p.superstep, p.source, p.destination, p.head[RAYA_PACKET_STATE], p.head[RAYA_PACKET_PIXEL]};
+    ++packets_seen_;
+    if (packets_.size() < kMostPackets) return packets_.push_back(sample);
+    const std::uint64_t place = random_.next() % packets_seen_;
+    if (place < kMostPackets) packets_[place] = sample;
+}
+
+// Supersteps one behind the other.
+class TorusTrace::Timeline {
+  public:
+    Timeline(const TorusTrace& seen, TraceFile& trace, const TorusResult& result, std::size_t nodes)
+        : seen_(seen), trace_(trace), result_(result), nodes_(traced_pes(result.load.per_pe, nodes)) {
+        trace.name_process(kTraceMachine, "torus of T805s (modelled time, step by step)");
+        trace.name_track(kSupersteps, "supersteps");
+        for (const TracedPe& n : nodes_) trace.name_track(track_of(n.pe), traced_pe_name("node", n));
+    }
+
+    void add_supersteps() {
+        for (std::size_t step = 0; step < seen_.steps_.size(); ++step) {
+            const Superstep& all = result_.supersteps[step];
+            begins_.push_back(now_ms_);
+            const double computed = now_ms_ + cycles_ms(all.most_cycles);
+            computed_.push_back(computed);
+            const double end = computed + link_ms(all.most_link_words);
+            add_machine(step, end);
+            for (const TracedPe& n : nodes_) add_node(step, n.pe, computed, end);
+            now_ms_ = end;
+        }
+    }
+
+    // Gives how many there are.
+    std::size_t add_flows() {
+        std::set<std::uint32_t> shown;
+        for (const TracedPe& n : nodes_) shown.insert(n.pe);
+        std::size_t flows = 0;
+        for (const Sample& p : seen_.packets_) {
+            const std::size_t arrival = p.superstep + way(seen_.torus_, p.source, p.destination);
+            if (!shown.contains(p.source) || !shown.contains(p.destination) || arrival >= begins_.size()) continue;
+            trace_.flow(packet_kind_name(raya_state_kind(p.state)), track_of(p.source),
+                        nanoseconds(computed_[p.superstep]), track_of(p.destination), nanoseconds(begins_[arrival]));
+            ++flows;
+        }
+        return flows;
+    }
+
+  private:
+    void add_machine(std::size_t step, double end) {
+        const std::vector<NodeStep>& nodes = seen_.steps_[step];
+        const Superstep& all = result_.supersteps[step];
+        std::vector<std::uint64_t> cycles;
+        std::uint64_t words = 0;
+        for (const NodeStep& n : nodes) {
+            cycles.push_back(n.cycles);
+            words += n.words;
+        }
+        const Load load = load_of(std::move(cycles));
+        const std::uint64_t at = nanoseconds(now_ms_);
+        trace_.slice(kSupersteps, fmt::format("superstep {}", step), at, nanoseconds(end),
+                     {{"live", all.live},
+                      {"u", load.imbalance},
+                      {"busiest_cycles", all.most_cycles},
+                      {"busiest_link_words", all.most_link_words},
+                      {"words", words}});
+        trace_.counter(kTraceMachine, "live rays", at, {{"packets", static_cast<double>(all.live)}});
+        trace_.counter(kTraceMachine, "u", at, {{"u", load.imbalance}});
+        const double links = static_cast<double>(nodes.size()) * links_of_node(seen_.torus_);
+        trace_.counter(kTraceMachine, "link words", at,
+                       {{"busiest", static_cast<double>(all.most_link_words)},
+                        {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
+    }
+
+    void add_node(std::size_t step, std::uint32_t node, double computed, double end) {
+        const NodeStep& n = seen_.steps_[step][node];
+        const TraceTrack track = track_of(node);
+        const auto slice = [&](const char* name, double from, double to, const Json& arguments = {}) {
+            if (nanoseconds(to) > nanoseconds(from))
+                trace_.slice(track, name, nanoseconds(from), nanoseconds(to), arguments);
+        };
+        trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end));
+        const double done = now_ms_ + cycles_ms(n.cycles), sent = computed + link_ms(n.link_words);
+        slice("compute", now_ms_, done, {{"cycles", n.cycles}});
+        slice("wait for the busiest node", done, computed);
+        slice("exchange", computed, sent, {{"busiest_link_words", n.link_words}, {"words", n.words}});
+        slice("wait for the busiest link", sent, end);
+    }
+
+    const TorusTrace& seen_;
+    TraceFile& trace_;
+    const TorusResult& result_;
+    std::vector<TracedPe> nodes_;
+    std::vector<double> begins_, computed_;  // of each superstep, ms
+    double now_ms_ = 0;
+};
+
+void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const {
+    if (nodes == 0) {
+        trace.metadata()["machine"] = "left out: no node was asked for";
+        return;
+    }
+    Timeline line(*this, trace, result, nodes);
+    line.add_supersteps();
+    const std::size_t flows = line.add_flows();
+    trace.metadata()["machine"] = {
+        {"name", "torus"},
+        {"nodes", raya_nodes(torus_)},
+        {"packets_seen", packets_seen_},
+        {"packets_sampled", packets_.size()},
+        {"flows", flows},
+        {"note",
+         "modelled time, from the trace's time 0 on, every superstep waiting for its busiest node and link; it "
+         "has nothing to do with the measured times above it. Packets are told of in every 16th superstep, in all with "
+         "--packets; a flow ends at the earliest superstep in which "
+         "its packet can arrive"}};
+}
+
+}  // namespace raya

@@ -1,0 +1,89 @@
+// What a session tells an observer: builds, arguments of launches, and how the device's clock lies.
+#include <catch2/catch.hpp>
+
+#include "cl/clock_anchor.hpp"
+#include "cl/commands.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+constexpr const char* kSource =
+    "__kernel void put(__global uint* to, const uint value, const float scale, __local uint* words) {\n"
+    "    words[0] = value; to[get_global_id(0)] = words[0] + (uint)scale;\n"
+    "}\n";
+
+}  // namespace
+
+TEST_CASE("an observed session notes builds, and the arguments of so many launches", "[cl]") {
+    Session session(choose_device(""));
+    StepLog log;
+    session.observe(log, 2);
+    auto put =
+        session.build("put.cl", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint, cl_float, LocalMemory<cl_uint>>("put");
+    Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 8), other = session.buffer<cl_uint>("others", 8);
+    for (cl_uint i = 0; i < 3; ++i) session.launch("go", put, 4, 2, to, 7 + i, 0.5F, LocalMemory<cl_uint>{3});
+    session.copy("move", to, 0, other, 0, 8);
+    const std::vector<CommandRecord>& commands = session.profile().commands();
+    REQUIRE(commands.size() == 4);
+    const auto& arguments = commands[1].arguments;
+    REQUIRE(arguments.size() == 4);
+    CHECK((arguments[0].name == "to" || arguments[0].name == "0"));  // not every driver keeps names
+    CHECK(arguments[0].value == "numbers, 8 x 4 bytes");
+    CHECK(arguments[1].value == "8");
+    CHECK(arguments[2].value == "0.5");
+    CHECK(arguments[3].value == "local, 12 bytes");
+    CHECK(commands[2].arguments.empty());
+    CHECK(commands[1].object == "put");
+    CHECK(commands[1].groups == 4);
+    CHECK(commands[1].group_size == 2);
+    CHECK(commands[3].object == "numbers -> others");
+    CHECK(commands[3].groups == 0);
+    REQUIRE(log.steps().size() == 1);
+    CHECK(log.steps()[0].name == "build put.cl");
+}
+
+TEST_CASE("nobody asks, nothing is noted", "[cl]") {
+    Session session(choose_device(""));
+    auto put =
+        session.build("put.cl", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint, cl_float, LocalMemory<cl_uint>>("put");
+    Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 8);
+    session.launch("go", put, 4, 2, to, 7U, 0.5F, LocalMemory<cl_uint>{3});
+    const StepLog::Step step = session.step("nothing");
+    CHECK(session.profile().commands()[0].arguments.empty());
+}
+
+TEST_CASE("the anchor of a clock brings a command's time between the host's", "[cl]") {
+    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+        SplitMix random(seed);
+        const std::uint64_t before = random.next() >> 8, after = before + random.next() % 1000,
+                            queued = seed % 3 ? random.next() >> 8 : before + random.next() % (after - before + 1);
+        CAPTURE(seed, before, after, queued);
+        const ClockAnchor anchor = anchor_between(before, queued, after);
+        const auto host = static_cast<std::uint64_t>(static_cast<std::int64_t>(queued) + anchor.offset_ns);
+        CHECK(before <= host);
+        CHECK(host <= after);
+        CHECK(anchor.same_clock == (before <= queued && queued <= after));
+        CHECK((anchor.same_clock || 2 * anchor.uncertainty_ns >= after - before));
+    }
+}
+
+TEST_CASE("a command lies between the host's times around it", "[cl]") {
+    Session session(choose_device(""));
+    const ClockAnchor anchor = clock_anchor(session);
+    CHECK(session.profile().commands().empty());
+    Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 1 << 20);
+    const std::uint64_t before = host_clock_ns();
+    session.fill("fill", to, 3);
+    session.finish();
+    const std::uint64_t after = host_clock_ns();
+    const CommandRecord& c = session.profile().commands().back();
+    const auto host = [&](std::uint64_t ns) { return static_cast<std::int64_t>(ns) + anchor.offset_ns; };
+    const auto spare = static_cast<std::int64_t>(anchor.uncertainty_ns);
+    CHECK(host(c.queued) >= static_cast<std::int64_t>(before) - spare);
+    CHECK(host(c.ended) <= static_cast<std::int64_t>(after) + spare);
+    Session untimed(choose_device(""), Timing::kOff);
+    CHECK_THROWS_AS(clock_anchor(untimed), std::logic_error);
+}
+
+}  // namespace raya

@@ -1,0 +1,165 @@
+// The traces that the program writes: each by the schema, and against the report of the same run.
+#include <map>
+
+#include "cli/render_files.hpp"
+#include "report/gunzip.hpp"
+#include "report/trace_file.hpp"
+#include "report/trace_schema.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+struct TracedRun {
+    Outcome run;
+    Json trace, report;
+};
+
+TracedRun traced(const std::string& scene, const Words& options, const std::string& ending = ".json") {
+    const ScratchFolder folder;
+    const std::string file = folder / ("t" + ending), report = folder / "r.json";
+    Words words = {"render", scene_file(scene), "-o", folder / "x.png", "--size", "24x16", "--lanes",
+                   "4",      "--trace",         file, "--report",       report};
+    words.insert(words.end(), options.begin(), options.end());
+    TracedRun t{run_raya(words), {}, {}};
+    INFO(t.run.told());
+    REQUIRE(t.run.code == 0);
+    CHECK(folder.entries() == 3);
+    const std::string text = file_contents(file);
+    t.trace = Json::parse(ending.ends_with(".gz") ? gunzip(text) : text);
+    t.report = Json::parse(file_contents(report));
+    return t;
+}
+
+// Nanoseconds and commands by label and kind.
+using Sums = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;
+
+Sums sums_of_trace(const Json& trace) {
+    Sums sums;
+    for (const Json& e : trace["traceEvents"]) {
+        if (e["ph"] != "X" || e["pid"] != kTraceDevice) continue;
+        auto& [ns, commands] = sums[e["name"].get<std::string>() + "/" + e["args"]["kind"].get<std::string>()];
+        ns += std::llround(1000 * e["dur"].get<double>());
+        ++commands;
+        const Json& a = e["args"];
+        CHECK(a["queued_ns"] <= a["submitted_ns"]);
+        CHECK(a["submitted_ns"] <= a["started_ns"]);
+        CHECK(a["ended_ns"].get<std::int64_t>() - a["started_ns"].get<std::int64_t>() ==
+              std::llround(1000 * e["dur"].get<double>()));
+    }
+    return sums;
+}
+
+Sums sums_of_report(const Json& report) {
+    Sums sums;
+    for (const Json& c : report["measured"]["commands"])
+        sums[c["label"].get<std::string>() + "/" + c["kind"].get<std::string>()] = {c["total_ns"], c["launches"]};
+    return sums;
+}
+
+void check(const TracedRun& t) {
+    INFO(t.run.told());
+    const TraceSchema schema(t.trace);
+    CHECK(schema.faults() == std::vector<std::string>{});
+    CHECK(sums_of_trace(t.trace) == sums_of_report(t.report));
+    for (const std::int64_t pid : {1, 2, 3}) CHECK_FALSE(schema.slices_of(pid).empty());
+    CHECK(t.trace["otherData"]["events_left_out"] == 0);
+    CHECK(t.trace["otherData"]["device_clock"].is_object());
+}
+
+// The host's step of that name contains all commands of the device.
+void check_clocks(const Json& trace) {
+    const TraceSchema schema(trace);
+    const auto steps = schema.slices_of(kTraceHost);
+    const auto render = std::find_if(steps.begin(), steps.end(), [](const auto& s) { return s.name == "render"; });
+    REQUIRE(render != steps.end());
+    for (const auto& command : schema.slices_of(kTraceDevice)) {
+        CAPTURE(command.name, command.start, command.end, render->start, render->end);
+        CHECK(render->start <= command.start);
+        CHECK(command.end <= render->end);
+    }
+}
+
+const Json& kernel_of(const Json& trace, const std::string& label) {
+    for (const Json& e : trace["traceEvents"])
+        if (e["ph"] == "X" && e["name"] == label && e["args"].value("kind", "") == "kernel") return e["args"];
+    throw std::runtime_error("no kernel " + label);
+}
+
+}  // namespace
+
+TEST_CASE("a ring's trace keeps the rules and adds up to the report", "[cli]") {
+    const TracedRun t = traced("centre", {"--pes", "24"});
+    check(t);
+    check_clocks(t.trace);
+    CHECK(kernel_of(t.trace, "trace")["groups"] == 24);
+    CHECK(kernel_of(t.trace, "trace")["kernel"] == "trace");
+    CHECK(kernel_of(t.trace, "trace")["arguments"].size() == 12);
+    const auto steps = TraceSchema(t.trace).slices_of(kTraceHost);
+    for (const std::string name : {"read scene", "pack scene", "set up device", "build ring/trace.cl", "render",
+                                   "trace", "gather", "write images"})
+        CHECK(std::count_if(steps.begin(), steps.end(), [&](const auto& s) { return s.name == name; }) == 1);
+}
+
+TEST_CASE("traces of smoothed images, with gzip and with a profile", "[cli]") {
+    check(traced("centre", {"--pes", "24", "--offset", "4", "--antialias", "filter"}, ".json.gz"));
+    const TracedRun t = traced("centre", {"--pes", "24", "--antialias", "supersample", "--profile"}, ".json.gz");
+    check(t);
+    const Json& measured = t.report["measured"];
+    CHECK(measured["builds"].size() >= 2);
+    CHECK(measured["peak"]["copy_bytes_per_s"] > 0);
+    Words labels;
+    for (const Json& row : measured["roofline"]) labels.push_back(row["label"]);
+    CHECK(labels == Words{"trace", "supersample", "supersample.compare"});
+    for (const Json& row : measured["roofline"]) {
+        CHECK(row["operations"] > 0);
+        CHECK(row["share_of_roof"] > 0);
+        CHECK_THAT(t.run.out, Catch::Contains("roof    " + row["label"].get<std::string>() + ": "));
+    }
+}
+
+TEST_CASE("a torus's trace has its nodes, packets and links", "[cli]") {
+    const TracedRun t = traced("centre", {"--machine", "torus", "--nodes", "2x2x2", "--trace-pes", "5", "--profile"});
+    check(t);
+    check_clocks(t.trace);
+    const TraceSchema schema(t.trace);
+    CHECK(schema.flows() > 0);
+    CHECK(std::count_if(schema.tracks().begin(), schema.tracks().end(),
+                        [](const auto& track) { return track.first.first == kTraceMachine; }) == 6);
+    for (const char* label : {"inject", "trace_voxel", "route", "accept", "compose"})
+        CHECK_THAT(t.run.out, Catch::Contains(std::string("roof    ") + label + ": "));
+}
+
+TEST_CASE("a limit on events is kept and said", "[cli]") {
+    const TracedRun t = traced("centre", {"--pes", "24", "--trace-events", "20"});
+    CHECK(t.trace["otherData"]["events"] == 20);
+    const std::uint64_t left_out = t.trace["otherData"]["events_left_out"];
+    CHECK(left_out > 0);
+    CHECK(TraceSchema(t.trace).faults() == std::vector<std::string>{});
+    CHECK_THAT(t.run.err,
+               Catch::Contains(std::to_string(left_out) + " events are left out of " + std::to_string(20 + left_out)));
+}
+
+TEST_CASE("a trace that cannot be is refused before anything is rendered", "[cli]") {
+    const ScratchFolder folder;
+    const auto refused = [&](const Words& options) {
+        Words words = {"render", scene_file("centre"), "-o", folder / "x.png", "--size", "8", "--pes", "8"};
+        words.insert(words.end(), options.begin(), options.end());
+        const Outcome run = run_raya(words);
+        INFO(run.told());
+        CHECK(run.code == 2);
+        CHECK(folder.entries() == 0);
+        return run.err;
+    };
+    CHECK_THAT(refused({"--trace", folder / "t.txt"}), Catch::Contains(".json.gz"));
+    CHECK_THAT(refused({"--trace", folder / "no/t.json"}), Catch::Contains("no/t.json"));
+    CHECK_THAT(refused({"--trace", folder / "x.json", "--report", folder / "x.json"}), Catch::Contains("named twice"));
+    CHECK_THAT(refused({"--trace-events", "5"}), Catch::Contains("give --trace"));
+    CHECK_THAT(refused({"--trace-pes", "5"}), Catch::Contains("give --trace"));
+    CHECK_THAT(refused({"--trace", folder / "t.json", "--trace-events", "0"}), Catch::Contains("1 or more"));
+    CHECK_THAT(refused({"--trace", folder / "t.json", "--trace-events", "-5"}), Catch::Contains("--trace-events"));
+}
+
+}  // namespace raya

@@ -1,0 +1,115 @@
+// The roofline: figures that can be worked out by hand.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "machine/budget.hpp"
+#include "report/profile_table.hpp"
+#include "report/roofline.hpp"
+
+namespace raya {
+namespace {
+
+using Catch::Contains;
+
+const DevicePeak kPeak = {.fp32_per_s = 100e9,
+                          .format = "e6m15",
+                          .multiply_per_s = 10e9,
+                          .divide_per_s = 1e9,
+                          .root_per_s = 2e9,
+                          .copy_bytes_per_s = 20e9,
+                          .copy_bytes = 256 << 20};
+
+LabelSummary kernel(const std::string& label, std::uint64_t ns) {
+    return {.label = label, .kind = "kernel", .launches = 2, .total_ns = ns, .min_ns = 1, .mean_ns = 2.0, .max_ns = 3};
+}
+
+RooflineRow row_of(const KernelWork& work, std::uint64_t ns, const DevicePeak& peak = kPeak) {
+    const Roofline all = roofline(peak, {work}, {kernel(work.label, ns)});
+    REQUIRE(all.rows.size() == 1);
+    return all.rows.front();
+}
+
+}  // namespace
+
+TEST_CASE("a kernel of many operations is under the roof of computing", "[report]") {
+    const KernelWork work = {
+        .label = "trace", .rays = 5, .operations = 970, .divisions = 20, .roots = 10, .bytes = 100};
+    const RooflineRow row = row_of(work, 100);
+    CHECK(row.bound == Bound::kCompute);
+    CHECK(row.intensity == Approx(10));
+    CHECK(row.share == Approx(0.1));  // 1000 operations in 100 ns are 10 Gop/s of 100
+    REQUIRE(row.of_format);
+    CHECK(*row.of_format == Approx((97 + 20 + 5) / 100.0));
+}
+
+TEST_CASE("a kernel of many bytes is under the roof of bandwidth", "[report]") {
+    const RooflineRow row = row_of({.label = "move", .operations = 0, .bytes = 1000}, 100);
+    CHECK(row.bound == Bound::kBandwidth);
+    CHECK(row.share == Approx(0.5));  // 10 GB/s of 20
+    CHECK_FALSE(row.of_format);
+    // The ridge lies at 100 / 20 = 5 operations a byte.
+    CHECK(row_of({.label = "a", .operations = 501, .bytes = 100}, 1).bound == Bound::kCompute);
+    CHECK(row_of({.label = "a", .operations = 499, .bytes = 100}, 1).bound == Bound::kBandwidth);
+}
+
+TEST_CASE("there is a row only for kernels that ran and were timed", "[report]") {
+    const KernelWork work = {.label = "a", .operations = 1};
+    CHECK(roofline(kPeak, {work}, {}).rows.empty());
+    CHECK(roofline(kPeak, {work}, {kernel("b", 1)}).rows.empty());
+    CHECK(roofline(kPeak, {work}, {kernel("a", 0)}).rows.empty());
+    LabelSummary copy = kernel("a", 1);
+    copy.kind = "copy";
+    CHECK(roofline(kPeak, {work}, {copy}).rows.empty());
+    CHECK(roofline({}, {work}, {kernel("a", 1)}).rows.empty());
+    CHECK_THAT(roofline_table(roofline({}, {work}, {kernel("a", 1)})), Contains("does not time"));
+}
+
+TEST_CASE("events are worth their budgets", "[report]") {
+    EventCounts events{};
+    events[RAYA_SPHERE_TESTS] = 10;
+    events[RAYA_PLANE_TESTS] = 3;
+    events[RAYA_PRIMARY] = 2;
+    events[RAYA_SHADOW] = 1;
+    const KernelWork work = work_of("trace", events);
+    CHECK(work.rays == 3);
+    CHECK(work.operations == 10 * 12 + 3 * 7 + 2 * 12 + 1 * 12);
+    CHECK(work.divisions == 3 + 2 + 1);
+    CHECK(work.roots == 2 + 1);
+    CHECK(work.all_operations() == 177 + 6 + 3);
+}
+
+TEST_CASE("the table says which roof each kernel is under and what share it reached", "[report]") {
+    const Roofline all = roofline(
+        kPeak, {{.label = "trace", .rays = 5, .operations = 1000, .bytes = 100}, {.label = "route", .bytes = 1000}},
+        {kernel("trace", 100), kernel("route", 100)});
+    const std::string table = roofline_table(all);
+    CAPTURE(table);
+    CHECK_THAT(table, Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate, 100.00 % of e6m15's own"));
+    CHECK_THAT(table, Contains("route: bandwidth bound, 50.00 % of the copy bandwidth\n"));
+    CHECK_THAT(table,
+               Contains("100.00 Gop/s multiply-adds in fp32; in e6m15: 10.00 multiply-adds, 1.00 divisions, 2.00"));
+    CHECK_THAT(table, Contains("compute above 5.00 op/byte"));
+    const auto json = roofline_json(all);
+    CHECK(json[0]["rays_per_s"] == Approx(5e7));
+    CHECK(json[0]["operations_per_s"] == Approx(1e10));
+    CHECK(json[0]["share_of_roof"] == Approx(0.1));
+    CHECK(json[1]["share_of_format"].is_null());
+}
+
+TEST_CASE("the profile keeps builds and waiting apart from the commands", "[report]") {
+    LabelSummary c = kernel("trace", 2'000'000);
+    c.submit_ns = 3'000'000;
+    c.start_ns = 5'000'000;
+    c.bytes = 7;
+    const std::string table = profile_table(1.5, {{"ring/trace.cl", 1.25}}, {c});
+    CAPTURE(table);
+    CHECK_THAT(table, Catch::StartsWith("kernel build 1.500 s, not among the commands: ring/trace.cl 1.250 s;"));
+    CHECK_THAT(table, Contains("2.000    100.0"));
+    CHECK_THAT(table, Contains("1.500             2.500  0.000  0.000\n"));
+    CHECK(commands_json({c}, false)[0].size() == 7);
+    CHECK(commands_json({c}, true)[0]["queue_to_submit_mean_ns"] == 1.5e6);
+    CHECK(commands_json({c}, true)[0]["submit_to_start_mean_ns"] == 2.5e6);
+    CHECK(commands_json({c}, true)[0]["bytes"] == 7);
+}
+
+}  // namespace raya

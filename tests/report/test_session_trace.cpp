@@ -1,0 +1,116 @@
+// Host steps and device commands in a trace: their times, whatever the device's clock says.
+#include <catch2/catch.hpp>
+
+#include "report/session_trace.hpp"
+#include "report/trace_schema.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::json;
+
+Json read(const TraceFile& trace) { return Json::parse(trace.finish(false)); }
+
+CommandRecord command(const std::string& label, std::uint64_t start, std::uint64_t end) {
+    return {.label = label,
+            .kind = "copy",
+            .queued = start,
+            .submitted = start,
+            .started = start,
+            .ended = end,
+            .bytes = 8,
+            .object = "a -> b"};
+}
+
+Json slice_named(const Json& trace, const std::string& name) {
+    for (const Json& e : trace["traceEvents"])
+        if (e["ph"] == "X" && e["name"] == name) return e;
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("steps of the host lie in each other as their scopes did", "[report]") {
+    const std::uint64_t begin = host_clock_ns();
+    StepLog log;
+    const int answer = log.during("outer", [&] {
+        const StepLog::Step first(&log, "first");
+        return log.during("inner", [] { return 42; });
+    });
+    CHECK(answer == 42);
+    const StepLog::Step open(&log, "open");
+    const StepLog::Step nobody(nullptr, "nobody");
+    const std::vector<HostStep> steps = log.steps();
+    REQUIRE(steps.size() == 4);
+    CHECK(steps[3].ended >= steps[3].started);
+    CHECK(steps[2].depth == 2);
+    TraceFile trace(100);
+    add_host_steps(trace, steps, begin);
+    const TraceSchema schema(read(trace));
+    CHECK(schema.faults() == std::vector<std::string>{});
+    const auto slices = schema.slices_of(kTraceHost);
+    REQUIRE(slices.size() == 4);
+    for (std::size_t i : {1u, 2u}) CHECK((slices[0].start <= slices[i].start && slices[i].end <= slices[0].end));
+}
+
+TEST_CASE("a command's slice has its times, its bytes and its launch", "[report]") {
+    Profile profile(true);
+    profile.add({.label = "trace",
+                 .kind = "kernel",
+                 .queued = 1000,
+                 .submitted = 1100,
+                 .started = 1250,
+                 .ended = 2251,
+                 .object = "trace_kernel",
+                 .groups = 7,
+                 .group_size = 3,
+                 .arguments = {{"band", "12"}}});
+    profile.add(command("move", 3000, 3000));
+    TraceFile trace(100);
+    add_device_commands(trace, "a device", profile, {}, 250);
+    const Json json = read(trace), slice = slice_named(json, "trace"), copy = slice_named(json, "move");
+    CHECK(TraceSchema(json).faults().empty());
+    CHECK(slice["ts"] == 1.0);
+    CHECK(slice["dur"] == 1.001);
+    CHECK(slice["args"] == Json::parse(R"({"kind":"kernel","kernel":"trace_kernel","groups":7,"group_size":3,
+        "arguments":{"band":"12"},"queued_ns":1000,"submitted_ns":1100,"started_ns":1250,"ended_ns":2251})"));
+    CHECK(copy["args"]["bytes"] == 8);
+    CHECK(copy["args"]["buffer"] == "a -> b");
+    CHECK(json["otherData"]["device_clock"]["same_as_host"] == true);
+}
+
+TEST_CASE("another clock is moved to the host's, and what comes too early is kept", "[report]") {
+    Profile profile(true);
+    profile.add(command("early", 90, 95));
+    profile.add(command("later", 200, 260));
+    TraceFile trace(100);
+    add_device_commands(trace, "a device", profile, {.same_clock = false, .offset_ns = 900, .uncertainty_ns = 5}, 1000);
+    const Json json = read(trace);
+    CHECK(TraceSchema(json).faults().empty());
+    CHECK(slice_named(json, "later")["ts"] == 0.1);
+    CHECK(slice_named(json, "later")["dur"] == 0.06);
+    CHECK(slice_named(json, "early")["ts"] == 0);
+    CHECK(json["otherData"]["device_times_moved"] == 2);  // start and end
+    CHECK(json["otherData"]["device_clock"]["offset_ns"] == 900);
+}
+
+TEST_CASE("commands that overlap, or end before they begin, still make a trace", "[report]") {
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        CAPTURE(seed);
+        SplitMix random(seed);
+        Profile profile(true);
+        for (int i = 0; i < 40; ++i) profile.add(command("c", random.next() % 1000, random.next() % 1000));
+        TraceFile trace(1000);
+        add_device_commands(trace, "a device", profile, {}, random.next() % 500);
+        const TraceSchema schema(read(trace));
+        CHECK(schema.faults() == std::vector<std::string>{});
+        CHECK(schema.slices_of(kTraceDevice).size() == 40);
+    }
+    const Profile untimed(false);
+    TraceFile trace(10);
+    add_device_commands(trace, "a device", untimed, {}, 0);
+    CHECK(read(trace)["otherData"]["device"].get<std::string>().starts_with("left out"));
+}
+
+}  // namespace raya

@@ -1,0 +1,168 @@
+// The writer of traces, by the schema's rules, and the schema by traces that break them.
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "report/gunzip.hpp"
+#include "report/trace_file.hpp"
+#include "report/trace_schema.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::json;
+
+Json read(const TraceFile& trace) { return Json::parse(trace.finish(false)); }
+
+// Slices within a slice, within a slice, ...
+void add_slices(TraceFile& trace, TraceTrack track, SplitMix& random, std::uint64_t start, std::uint64_t end,
+                int depth) {
+    std::uint64_t at = start;
+    while (at < end) {
+        const std::uint64_t from = at + random.next() % (end - at + 1), to = from + random.next() % (end - from + 1);
+        trace.slice(track, "s" + std::to_string(depth), from, to);
+        if (depth > 0) add_slices(trace, track, random, from, to, depth - 1);
+        at = to + 1 + (end - start) / 4;
+    }
+}
+
+TraceFile random_trace(std::uint64_t seed, std::size_t most) {
+    SplitMix random(seed);
+    TraceFile trace(most);
+    const auto processes = static_cast<std::uint32_t>(1 + random.next() % 3);
+    for (std::uint32_t p = 1; p <= processes; ++p) {
+        trace.name_process(p, "process \"" + std::to_string(p) + "\" \\ \xff");
+        for (std::uint32_t t = 1; t <= 3; ++t) {
+            trace.name_track({p, t}, "track");
+            trace.slice({p, t}, "all", 0, 1'000'000'000'000);
+            add_slices(trace, {p, t}, random, 0, random.next() % 1'000'000'000'000, 3);
+        }
+        for (int i = 0; i < 5; ++i)
+            trace.counter(p, "c", random.next() % 1000, {{"a", random.uniform(-1, 1)}, {"b", 1e300}});
+        for (int i = 0; i < 5; ++i) {
+            const std::uint64_t from = random.next() % 1'000'000'000;
+            trace.flow("f", {p, 1}, from, {1, 2}, from + random.next() % 1000);
+        }
+    }
+    trace.metadata()["seed"] = seed;
+    return trace;
+}
+
+}  // namespace
+
+TEST_CASE("what the writer writes keeps the rules", "[report]") {
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        CAPTURE(seed);
+        const TraceFile trace = random_trace(seed, 1'000'000);
+        const Json json = read(trace);
+        const TraceSchema schema(json);
+        CHECK(schema.faults() == std::vector<std::string>{});
+        CHECK(schema.flows() >= 5);
+        CHECK(json["otherData"]["seed"] == seed);
+        CHECK(json["otherData"]["events_left_out"] == 0);
+        if (seed < 5) CHECK(gunzip(trace.finish(true)) == trace.finish(false));
+    }
+}
+
+TEST_CASE("events beyond the limit are left out and counted, flows as a whole", "[report]") {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        const std::size_t all = random_trace(seed, 1'000'000).events(), most = seed % (all + 2);
+        CAPTURE(seed, all, most);
+        const TraceFile trace = random_trace(seed, most);
+        const Json json = read(trace);
+        CHECK(trace.events() <= most);
+        CHECK(trace.events() + trace.left_out() == all);
+        CHECK(trace.events() + 1 >= std::min(most, all));  // a flow takes two
+        const std::vector<std::string> faults = TraceSchema(json).faults();
+        for (const std::string& fault : faults) CHECK_THAT(fault, Catch::Contains("outside all slices"));
+    }
+}
+
+TEST_CASE("a small trace, letter for letter", "[report]") {
+    TraceFile trace(10);
+    trace.name_process(1, "host");
+    trace.name_track({1, 7}, "steps");
+    trace.slice({1, 7}, "render", 1'234'567'890, 1'234'567'895, {{"bytes", 4}});
+    trace.counter(1, "u", 1000, {{"u", 0.5}});
+    CHECK(trace.finish(false) ==
+          R"({"displayTimeUnit":"ms","traceEvents":[
+{"ph":"M","name":"process_name","pid":1,"tid":0,"args":{"name":"host"}},
+{"ph":"M","name":"process_sort_index","pid":1,"tid":0,"args":{"sort_index":1}},
+{"ph":"M","name":"thread_name","pid":1,"tid":7,"args":{"name":"steps"}},
+{"ph":"M","name":"thread_sort_index","pid":1,"tid":7,"args":{"sort_index":7}},
+{"ph":"X","name":"render","pid":1,"tid":7,"ts":1234567.890,"dur":0.005,"args":{"bytes":4}},
+{"ph":"C","name":"u","pid":1,"ts":1.000,"args":{"u":0.5}}
+],"otherData":{"events":2,"events_left_out":0}}
+)");
+    CHECK(TraceSchema(Json::parse(TraceFile(1).finish(false))).faults().empty());  // nothing at all
+}
+
+TEST_CASE("the writer refuses what readers would misread", "[report]") {
+    TraceFile trace(100);
+    trace.name_process(1, "host");
+    trace.name_track({1, 1}, "steps");
+    CHECK_THROWS_AS(trace.slice({1, 2}, "nowhere", 0, 1), std::logic_error);
+    CHECK_THROWS_AS(trace.slice({1, 1}, "backwards", 2, 1), std::logic_error);
+    trace.slice({1, 1}, "outer", 10, 20);
+    CHECK_THROWS_AS(trace.slice({1, 1}, "crossing", 15, 21), std::logic_error);
+    CHECK_THROWS_AS(trace.slice({1, 1}, "late", 5, 6), std::logic_error);
+    trace.slice({1, 1}, "inner", 10, 20);
+    trace.slice({1, 1}, "next, as long as it likes", 20, 35);
+    CHECK_THROWS_AS(trace.flow("f", {1, 1}, 12, {1, 1}, 11), std::logic_error);
+    CHECK_THROWS_AS(trace.flow("f", {1, 1}, 12, {2, 1}, 13), std::logic_error);
+    CHECK_THROWS_AS(trace.counter(1, "c", 0, {{"a", std::nan("")}}), std::logic_error);
+}
+
+TEST_CASE("the schema finds each broken rule", "[report]") {
+    struct Break {
+        std::string fault;
+        std::function<void(Json&)> apply;  // to the trace's events
+    };
+    const auto first = [](Json& events, const char* phase) -> Json& {
+        return *std::find_if(events.begin(), events.end(), [&](const Json& e) { return e["ph"] == phase; });
+    };
+    const Json slice = {{"ph", "X"}, {"name", "x"}, {"pid", 1}, {"tid", 1}, {"ts", 999'999'999.5}, {"dur", 2.0}};
+    const std::vector<Break> breaks = {
+        {"unknown phase", [&](Json& e) { first(e, "X")["ph"] = "Z"; }},
+        {"no name", [&](Json& e) { first(e, "X").erase("name"); }},
+        {"pid is no integer", [&](Json& e) { first(e, "X")["pid"] = "1"; }},
+        {"tid is no integer", [&](Json& e) { first(e, "X")["tid"] = 1.5; }},
+        {"no time ts", [&](Json& e) { first(e, "X")["ts"] = "0"; }},
+        {"no time ts", [&](Json& e) { first(e, "C").erase("ts"); }},
+        {"no time dur", [&](Json& e) { first(e, "X")["dur"] = -1; }},
+        {"args are no object", [&](Json& e) { first(e, "X")["args"] = 5; }},
+        {"a name after other events", [&](Json& e) { std::swap(e.front(), e.back()); }},
+        {"has no process_name", [&](Json& e) { e.erase(0); }},
+        {"has no process_sort_index", [&](Json& e) { e.erase(1); }},
+        {"has no thread_name", [&](Json& e) { e.erase(2); }},
+        {"has no thread_sort_index", [&](Json& e) { e.erase(3); }},
+        {"named twice", [&](Json& e) { e.insert(e.begin(), Json(e.front())); }},
+        {"a name without its value", [&](Json& e) { e[0]["args"].clear(); }},
+        {"a name of the wrong kind", [&](Json& e) { e[1]["args"]["sort_index"] = "1"; }},
+        {"slices cross", [&](Json& e) { e.push_back(slice); }},
+        {"a counter without values", [&](Json& e) { first(e, "C")["args"] = Json::object(); }},
+        {"a counter that is no number", [&](Json& e) { first(e, "C")["args"]["a"] = "much"; }},
+        {"a flow without id", [&](Json& e) { first(e, "s").erase("id"); }},
+        {"binds to the next slice", [&](Json& e) { first(e, "f").erase("bp"); }},
+        {"two of one end", [&](Json& e) { e.push_back(Json(first(e, "s"))); }},
+        {"has no end", [&](Json& e) { first(e, "f")["id"] = 4711; }},
+        {"has no beginning", [&](Json& e) { first(e, "f")["id"] = 4711; }},
+        {"ends do not agree", [&](Json& e) { first(e, "f")["ts"] = 0; }},
+        {"ends do not agree", [&](Json& e) { first(e, "f")["name"] = "g"; }},
+        {"outside all slices", [&](Json& e) { first(e, "f")["ts"] = 1e12; }},
+        {"does not count the events", [&](Json& e) { e.erase(e.size() - 1); }},
+    };
+    for (const Break& b : breaks) {
+        CAPTURE(b.fault);
+        Json json = read(random_trace(3, 1'000'000));
+        REQUIRE(TraceSchema(json).faults().empty());
+        b.apply(json["traceEvents"]);
+        std::string all;
+        const TraceSchema schema(json);
+        for (const std::string& fault : schema.faults()) all += fault + "\n";
+        CHECK_THAT(all, Catch::Contains(b.fault));
+    }
+    CHECK(TraceSchema(Json::array()).faults() == std::vector<std::string>{"no traceEvents"});
+}
+
+}  // namespace raya

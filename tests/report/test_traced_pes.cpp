@@ -1,0 +1,46 @@
+// Which PEs a trace shows.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "report/traced_pes.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+
+TEST_CASE("the PEs of a trace are as many as asked for, the busiest and the idlest among them", "[report]") {
+    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+        SplitMix random(seed);
+        std::vector<std::uint64_t> loads(1 + random.next() % 70);
+        for (std::uint64_t& load : loads) load = random.next() % (1 + random.next() % 100);
+        const std::size_t most = random.next() % 80;
+        CAPTURE(seed, most, loads);
+        const std::vector<TracedPe> traced = traced_pes(loads, most);
+        REQUIRE(traced.size() == std::min(most, loads.size()));
+        std::vector<std::uint32_t> numbers;
+        for (const TracedPe& t : traced) numbers.push_back(t.pe);
+        CHECK(std::is_sorted(numbers.begin(), numbers.end()));
+        CHECK(std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end());
+        for (const std::uint32_t pe : numbers) CHECK(pe < loads.size());
+        const auto shows = [&](auto place) {
+            return std::count(numbers.begin(), numbers.end(), static_cast<std::uint32_t>(place - loads.begin())) == 1;
+        };
+        if (most > 0) CHECK(shows(std::max_element(loads.begin(), loads.end())));
+        if (most > 3) CHECK(shows(std::min_element(loads.begin(), loads.end())));
+    }
+}
+
+TEST_CASE("of sixteen PEs four are the busiest and four the idlest", "[report]") {
+    std::vector<std::uint64_t> loads(256);
+    for (std::size_t pe = 0; pe < 256; ++pe) loads[pe] = 1000 + (pe * 37) % 256;
+    std::string names;
+    for (const TracedPe& t : traced_pes(loads, 16)) {
+        names += traced_pe_name("PE", t) + "; ";
+        const std::uint64_t load = loads[t.pe] - 1000;
+        CHECK(t.remark == (load >= 252 ? "busiest" : load < 4 ? "idlest" : ""));
+    }
+    CAPTURE(names);
+    CHECK_THAT(names, Catch::StartsWith("PE 0 (idlest); "));
+    CHECK(std::count(names.begin(), names.end(), ';') == 16);
+}
+
+}  // namespace raya

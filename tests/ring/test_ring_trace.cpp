@@ -1,0 +1,153 @@
+// The modelled ring machine in a trace: its times are those of the time model, its work is what was counted.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "machine/budget.hpp"
+#include "report/trace_schema.hpp"
+#include "ring/render_scene.hpp"
+#include "ring/ring_trace.hpp"
+#include "ring/ring_work.hpp"
+#include "scene/random_below.hpp"
+#include "scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Rendered {
+    RingSettings settings;
+    RingResult result;
+};
+
+Rendered render(const RingCase& c) {
+    Session session(choose_device(""));
+    Rendered r{settings_of(c), {}};
+    r.result = RingRenderer(session, project_scene("centre"), r.settings).render();
+    return r;
+}
+
+Json trace_of(const Rendered& r, std::size_t pes) {
+    TraceFile trace(10'000'000);
+    add_ring_machine(trace, r.settings, r.result, pes);
+    return Json::parse(trace.finish(false));
+}
+
+double modelled_ns(const Rendered& r) {
+    std::vector<Load> loads;
+    for (const Phase& phase : r.result.phases) loads.push_back(phase.load);
+    const auto smoothing = smoothing_cycles(r.settings.antialias.method, largest_share(r.settings.mapping));
+    return 1e6 * modelled_time(r.settings.machine, loads, r.result.communication, 1, smoothing)->total_ms;
+}
+
+std::int64_t time_of(const std::vector<TraceSchema::Slice>& slices, const std::string& name) {
+    std::int64_t sum = 0;
+    for (const TraceSchema::Slice& s : slices)
+        if (s.name == name) sum += s.end - s.start;
+    return sum;
+}
+
+std::int64_t end_of(const std::vector<TraceSchema::Slice>& slices) {
+    std::int64_t end = 0;
+    for (const TraceSchema::Slice& s : slices) end = std::max(end, s.end);
+    return end;
+}
+
+std::uint64_t rotations_of(const std::vector<TraceSchema::Slice>& slices) {
+    return static_cast<std::uint64_t>(
+        std::count_if(slices.begin(), slices.end(), [](const auto& s) { return s.name == "rotation"; }));
+}
+
+// A side that takes one rotation has no rotations within it.
+std::uint64_t single_rotations(const Json& trace) {
+    std::uint64_t singles = 0;
+    for (const Json& e : trace["traceEvents"])
+        singles += e["ph"] == "X" && e["tid"] == 1 && e["args"].value("rotations", 0) == 1;
+    return singles;
+}
+
+}  // namespace
+
+TEST_CASE("the traced machine ends when the time model says, with the loads that were counted", "[ring]") {
+    SplitMix random(1);
+    const std::vector<std::string> mappings = {"cyclic", "column", "rows", "blocks", "grid:4x6", "tiles:4x4"};
+    for (int i = 0; i < 24; ++i) {
+        RingCase c{.width = 24, .height = 16, .pes = 24, .offset = random_below(random, 24), .machine = "spa"};
+        c.mapping = mappings[random_below(random, mappings.size())];
+        c.lanes = 4;
+        c.antialias.method = static_cast<AntialiasMethod>(i % 3);
+        const Rendered r = render(c);
+        CAPTURE(i, c.mapping, c.offset);
+        const Json json = trace_of(r, 24);
+        const TraceSchema schema(json);
+        CHECK(schema.faults() == std::vector<std::string>{});
+        CHECK(schema.tracks().size() == 25);
+        const auto& phases = schema.slices().at({kTraceMachine, 1});
+        CHECK(std::abs(static_cast<double>(end_of(phases)) - modelled_ns(r)) < 2);
+        const auto& names = schema.tracks();
+        for (const auto& [track, slices] : schema.slices()) {
+            if (track.second == 1) continue;
+            const auto pe = static_cast<std::size_t>(track.second - 2);
+            CAPTURE(names.at(track));
+            CHECK(end_of(slices) == end_of(phases));
+            for (const Phase& phase : r.result.phases)
+                CHECK(std::abs(time_of(slices, phase.name) - static_cast<std::int64_t>(100 * phase.load.per_pe[pe])) <
+                      2);
+            CHECK(rotations_of(slices) + single_rotations(json) == r.result.communication.rotations);
+        }
+    }
+}
+
+TEST_CASE("the counter of live rays comes down from all PEs to none", "[ring]") {
+    const Rendered r = render({.width = 40, .height = 8, .pes = 40, .offset = 0, .machine = "spa", .lanes = 4});
+    double last = 41;
+    std::size_t points = 0;
+    const Json json = trace_of(r, 4);
+    for (const Json& e : json["traceEvents"]) {
+        if (e["name"] != "live rays") continue;
+        CHECK(e["args"]["rays"] <= last);
+        last = e["args"]["rays"];
+        ++points;
+    }
+    CHECK(last == 0);
+    CHECK(points == 41);
+}
+
+TEST_CASE("a machine without rates, or without tracks, is left out and says so", "[ring]") {
+    Rendered r = render({.width = 8, .height = 4, .pes = 8, .offset = 2, .machine = "spa", .lanes = 4});
+    CHECK(trace_of(r, 0)["otherData"]["machine"].get<std::string>().starts_with("left out"));
+    CHECK(trace_of(r, 3)["otherData"]["machine"]["pes"] == 8);
+    r.settings.machine.cycle_ns.reset();
+    const Json json = trace_of(r, 8);
+    CHECK(json["traceEvents"].empty());
+    CHECK_THAT(json["otherData"]["machine"].get<std::string>(), Catch::Contains("rates are not known"));
+}
+
+TEST_CASE("the works of the kernels are what was counted", "[ring]") {
+    RingCase c{.width = 24, .height = 16, .pes = 24, .machine = "spa", .lanes = 4};
+    c.antialias.method = AntialiasMethod::kSupersample;
+    const Rendered super = render(c);
+    const auto works = ring_kernel_work(super.settings, super.result);
+    REQUIRE(works.size() == 3);
+    CHECK(works[0].label == "trace");
+    CHECK(works[1].label == "supersample");
+    const Operations all = operations_of(super.result.all.events);
+    CHECK(works[0].operations + works[1].operations == all.multiply_accumulates);
+    CHECK(works[0].divisions + works[1].divisions == all.divisions);
+    CHECK(works[0].roots + works[1].roots == all.roots);
+    // One launch: the words by each of 24 PEs, 15 counters of a PE read and written, 12 + 8 bytes a pixel.
+    const std::uint64_t words = super.result.communication.broadcast_words;
+    CHECK(works[0].bytes == 24 * 4 * words + 24 * 16 * 15 * super.result.group_size + 20 * 24 * 16);
+    const std::uint64_t neighbours = 2 * 23 * 16 + 2 * 24 * 15;
+    CHECK(works[2].label == "supersample.compare");
+    CHECK(works[2].operations == 18 * neighbours);
+    CHECK(works[2].bytes == 24 * neighbours);
+    c.antialias.method = AntialiasMethod::kFilter;
+    const Rendered filter = render(c);
+    std::uint64_t operations = 0;
+    for (const KernelWork& w : ring_kernel_work(filter.settings, filter.result))
+        if (w.label != "trace") operations += w.operations;
+    CHECK(operations == 3 * (neighbours + 24 * 16));
+}
+
+}  // namespace raya

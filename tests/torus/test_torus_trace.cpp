@@ -1,0 +1,167 @@
+// The modelled torus machine in a trace: stepwise time, and flows that follow packets.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "machine/budget.hpp"
+#include "report/trace_schema.hpp"
+#include "torus/render_torus.hpp"
+#include "torus/torus_time.hpp"
+#include "torus/torus_trace.hpp"
+#include "torus/torus_work.hpp"
+
+namespace raya {
+namespace {
+
+using Json = nlohmann::json;
+using Slices = std::vector<TraceSchema::Slice>;
+
+struct Traced {
+    TorusSettings settings;
+    TorusResult result;
+    Json trace;
+    std::uint64_t packets = 0;
+};
+
+Traced render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
+    Session session(choose_device(""));
+    Traced t{settings_of(c), {}, {}};
+    TorusTrace seen(t.settings.torus);
+    t.result = TorusRenderer(session, scene, t.settings)
+                   .render(
+                       {},
+                       [&](const PacketRecord& p) {
+                           seen.add_packet(p);
+                           ++t.packets;
+                       },
+                       [&](const SuperstepDetail& step) { seen.add_superstep(step); });
+    TraceFile trace(10'000'000);
+    seen.add_to(trace, t.result, nodes);
+    t.trace = Json::parse(trace.finish(false));
+    return t;
+}
+
+std::int64_t end_of(const Slices& slices) {
+    std::int64_t end = 0;
+    for (const TraceSchema::Slice& s : slices) end = std::max(end, s.end);
+    return end;
+}
+
+}  // namespace
+
+TEST_CASE("the traced torus ends at the stepwise time, its nodes compute what was counted", "[torus]") {
+    for (const std::uint64_t seed : {27u, 53u, 19u, 21u}) {
+        const TorusCase c{.nodes = {2, 2, 2}, .links = seed % 2 ? Links::kTorus2d : Links::kTorus3d, .lanes = 4};
+        CAPTURE(seed, case_text(c));
+        const Traced t = render(random_view_scene(seed), c, 8);
+        const TraceSchema schema(t.trace);
+        CHECK(schema.faults() == std::vector<std::string>{});
+        CHECK(schema.tracks().size() == 9);
+        const Slices& steps = schema.slices().at({kTraceMachine, 1});
+        CHECK(steps.size() == t.result.supersteps.size());
+        const double stepwise = 1e6 * torus_time(t.settings.torus, t.result).stepwise_ms;
+        CHECK(std::abs(static_cast<double>(end_of(steps)) - stepwise) < 2);
+        for (std::uint32_t node = 0; node < 8; ++node) {
+            std::int64_t computing = 0;
+            for (const TraceSchema::Slice& s : schema.slices().at({kTraceMachine, 2 + node}))
+                if (s.name == "compute") computing += s.end - s.start;
+            // Rounded to nanoseconds at both ends of each superstep.
+            CHECK(std::abs(computing - static_cast<std::int64_t>(40 * t.result.load.per_pe[node])) <=
+                  static_cast<std::int64_t>(2 * steps.size()));
+        }
+        // With all nodes shown and fewer packets than the sample holds, every packet is a flow.
+        REQUIRE(t.packets < TorusTrace::kMostPackets);
+        CHECK(schema.flows() == t.packets);
+        CHECK(t.trace["otherData"]["machine"]["flows"] == t.packets);
+    }
+}
+
+TEST_CASE("counters say what each superstep had", "[torus]") {
+    const Traced t = render(random_view_scene(27), {.lanes = 4}, 3);
+    std::vector<double> live, busiest;
+    for (const Json& e : t.trace["traceEvents"]) {
+        if (e["name"] == "live rays") live.push_back(e["args"]["packets"]);
+        if (e["name"] == "link words") busiest.push_back(e["args"]["busiest"]);
+    }
+    REQUIRE(live.size() == t.result.supersteps.size());
+    REQUIRE(busiest.size() == live.size());
+    for (std::size_t i = 0; i < live.size(); ++i) {
+        CHECK(live[i] == static_cast<double>(t.result.supersteps[i].live));
+        CHECK(busiest[i] == static_cast<double>(t.result.supersteps[i].most_link_words));
+    }
+    const TraceSchema schema(t.trace);
+    CHECK(schema.tracks().size() == 4);
+    CHECK(schema.flows() < t.packets);
+    CHECK(TraceSchema(render(random_view_scene(27), {.lanes = 4}, 0).trace).faults().empty());
+}
+
+TEST_CASE("of every fourth superstep the same packets are told as of all", "[torus]") {
+    const Scene scene = random_view_scene(27);
+    const TorusCase c{.links = Links::kTorus2d, .queue = 200, .lanes = 4};  // packets wait in their outboxes
+    const auto told = [&](std::uint32_t every) {
+        Session session(choose_device(""));
+        std::vector<std::string> packets;
+        TorusRenderer(session, scene, settings_of(c))
+            .render(
+                {},
+                [&](const PacketRecord& p) {
+                    if (p.superstep % 4 == 0)
+                        packets.push_back(
+                            fmt::format("{} {} {} {}", p.superstep, p.source, p.destination,
+                                        fmt::join(p.head.begin(), p.head.begin() + RAYA_PACKET_COLOUR, " ")));
+                    else
+                        CHECK(every == 1);
+                },
+                {}, every);
+        return packets;
+    };
+    const std::vector<std::string> all = told(1);
+    CHECK(all.size() > 100);
+    CHECK(told(4) == all);
+}
+
+TEST_CASE("the sample of packets has its size, and any packet may be in it", "[torus]") {
+    const raya_torus torus = make_torus({1, 2, 1}, Links::kTorus3d);
+    TorusTrace seen(torus);
+    const std::uint32_t all = 5 * TorusTrace::kMostPackets;
+    for (std::uint32_t i = 0; i < all; ++i) {
+        PacketRecord p{.superstep = i / 1000, .source = 0, .destination = 1};
+        p.head[RAYA_PACKET_STATE] = RAYA_KIND_SHADOW;
+        seen.add_packet(p);
+    }
+    TorusResult result;
+    result.load = load_of({1, 1});
+    const std::vector<std::uint64_t> words(2 * RAYA_LINKS);
+    for (std::uint32_t step = 0; step < all / 1000 + 2; ++step) {
+        result.supersteps.push_back({.most_cycles = 100});
+        seen.add_superstep({result.supersteps.back(), {100, 50}, words});
+    }
+    TraceFile trace(10'000'000);
+    seen.add_to(trace, result, 2);
+    const Json json = Json::parse(trace.finish(false));
+    const TraceSchema schema(json);
+    CHECK(schema.faults() == std::vector<std::string>{});
+    CHECK(schema.flows() == TorusTrace::kMostPackets);
+    std::vector<int> of_quarter(4);
+    for (const Json& e : json["traceEvents"])
+        if (e["ph"] == "s")
+            ++of_quarter[std::min<std::size_t>(3, static_cast<std::size_t>(e["ts"].get<double>() / 4 / 25))];
+    for (const int count : of_quarter) CHECK(std::abs(count - 5000) < 400);  // 6 standard deviations
+}
+
+TEST_CASE("the works of the torus's kernels are what was counted", "[torus]") {
+    const Traced t = render(random_view_scene(27), {.lanes = 4}, 0);
+    const auto works = torus_kernel_work(t.settings, t.result);
+    REQUIRE(works.size() == 5);
+    const Operations all = operations_of(t.result.events);
+    CHECK(works[0].operations + works[1].operations == all.multiply_accumulates);
+    CHECK(works[0].rays == t.result.events[RAYA_PRIMARY]);
+    CHECK(works[1].rays == t.result.made[RAYA_KIND_PRIMARY] + t.result.made[RAYA_KIND_REFLECTED] +
+                               t.result.made[RAYA_KIND_REFRACTED] + t.result.made[RAYA_KIND_SHADOW]);
+    std::uint64_t words = 0;
+    for (const std::uint64_t w : t.result.link_words) words += w;
+    CHECK(works[3].bytes == 2 * 4 * words);  // accept
+    CHECK(t.result.contributions == t.result.made[RAYA_KIND_RETURN]);
+    CHECK(works[4].operations == 3 * t.result.contributions);
+}
+
+}  // namespace raya
