@@ -29,7 +29,7 @@ void add_render_command(CLI::App& program) {
         ->required()
         ->type_name("IMAGE");
     add_render_options(*command, options->render);
-    add_torus_options(*command, options->render, options->torus);
+    add_torus_options(*command, options->torus);
     command->add_option("--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")
         ->type_name("FILE.exr");
     command->add_option("--mask", options->mask, "Write which pixels were supersampled, white on black")

@@ -17,7 +17,7 @@ constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 24;  // as partition()
 
 }  // namespace
 
-void add_torus_options(CLI::App& command, RenderOptions& o, TorusOptions& t) {
+void add_torus_options(CLI::App& command, TorusOptions& t) {
     const std::string group = "Torus machine";
     CLI::Option* machine = command.get_option("--machine");
     machine->description(machine->get_description() +

@@ -16,7 +16,7 @@ struct TorusOptions {
 };
 
 /// Adds the options with their help texts, and --pe-memory; add_render_options() has been called.
-void add_torus_options(CLI::App& command, RenderOptions& options, TorusOptions& torus);
+void add_torus_options(CLI::App& command, TorusOptions& torus);
 
 /// Refuses the options that say nothing to this machine: UserError with the option, the reason and the remedy.
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine);

@@ -45,11 +45,11 @@ enum class Bound { kCompute, kBandwidth };
 /// One kernel against the peak.
 struct RooflineRow {
     KernelWork work;
-    double seconds = 0;               // from start to end, of all launches
-    double intensity = 0;             // operations a byte
-    Bound bound = Bound::kCompute;    // what the roof is at this intensity
-    double share = 0;                 // of the roof: 1 is as fast as the device can be
-    std::optional<double> of_format;  // of the time that the operations take at the format's own rates; empty: none
+    double seconds = 0;                 // from start to end, of all launches
+    double intensity = 0;               // operations a byte
+    Bound bound = Bound::kCompute;      // what the roof is at this intensity
+    double share = 0;                   // of the roof: 1 is as fast as the device can be
+    std::optional<double> of_format{};  // of the time that the operations take at the format's own rates; empty: none
 };
 
 struct Roofline {
