@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +31,7 @@ Program Session::build(const std::string& name, const std::string& source,
     const StepLog::Step building = step("build " + name);
     std::vector<std::string> all = options;
     if (noted_arguments_ > 0) all.emplace_back("-cl-kernel-arg-info");  // names of arguments; the code stays the same
+    if (const char* more = std::getenv("RAYA_BUILD_OPTIONS"); more != nullptr && *more != '\0') all.emplace_back(more);
     return Program(context_, device_, name, source, all);
 }
 

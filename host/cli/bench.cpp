@@ -3,17 +3,22 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 
+#include "cli/bench_rows.hpp"
 #include "cli/commands.hpp"
 #include "cli/parse.hpp"
 #include "cli/render_options.hpp"
 #include "embedded.hpp"
 #include "error.hpp"
 #include "kernels/kernel_options.hpp"
+#include "report/bench_compare.hpp"
 #include "report/render_report.hpp"
 #include "report/table.hpp"
+#include "report/whole_file.hpp"
 #include "ring/operation_rates.hpp"
 #include "scene/nff_reader.hpp"
 
@@ -24,57 +29,11 @@ struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
     int samples = 7;
+    std::string report, baseline;
+    double tolerance = 10;  // percent
 };
 
-// One row: a renderer that is ready, and what was measured with it.
-struct BenchRow {
-    NumberFormat format;
-    std::unique_ptr<RingRenderer> renderer;
-    RingResult warm_up;
-    std::string hash;
-    std::vector<double> seconds;  // of each sample, one image each; sorted in the end
-
-    double best() const { return seconds.front(); }
-    double median() const { return seconds[seconds.size() / 2]; }
-};
-
-// One sample is at least 20 ms of kernel time, so that the clock and the launch do not count.
-double sample_seconds(RingRenderer& renderer) {
-    constexpr double kLeastSeconds = 0.02;
-    double seconds = 0;
-    int images = 0;
-    while (seconds < kLeastSeconds) {
-        seconds += trace_seconds(renderer.render());
-        ++images;
-    }
-    return seconds / images;
-}
-
-BenchRow prepare_row(Session& session, const Scene& scene, RingSettings settings, const NumberFormat& format,
-                     std::uint32_t lanes) {
-    settings.format = format;
-    settings.kernels.lanes = lanes;
-    BenchRow row{.format = format,
-                 .renderer = std::make_unique<RingRenderer>(session, scene, settings),
-                 .warm_up = {},
-                 .hash = {},
-                 .seconds = {}};
-    row.warm_up = row.renderer->render();
-    row.hash = pixel_hash(row.warm_up.image);
-    return row;
-}
-
-// The rows take turns, so that a disturbance from outside hits all of them alike.
-void take_samples(std::vector<BenchRow>& rows, int samples) {
-    for (int i = 0; i < samples; ++i)
-        for (BenchRow& row : rows) row.seconds.push_back(sample_seconds(*row.renderer));
-    for (BenchRow& row : rows) std::sort(row.seconds.begin(), row.seconds.end());
-}
-
-// The first row of the same format, the first row of the same lanes: what a row is compared with.
-const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
-    return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
-}
+// The first row of the same lanes: what the slow-down of a format is measured against.
 const BenchRow& first_of_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(),
                          [&](const BenchRow& r) { return r.warm_up.lanes == row.warm_up.lanes; });
@@ -116,16 +75,6 @@ void print_operations(Session& session, const std::vector<NumberFormat>& formats
                format_name(formats.front()), text_table(table));
 }
 
-void check_rows(const std::vector<BenchRow>& rows) {
-    for (const BenchRow& row : rows) {
-        const BenchRow& first = first_of_format(rows, row);
-        if (row.hash == first.hash && row.warm_up.all.events == first.warm_up.all.events) continue;
-        throw DeviceError(
-            fmt::format("{}: {} lanes give another image than {} lanes: {} and {}; the device or its compiler is wrong",
-                        format_name(row.format), row.warm_up.lanes, first.warm_up.lanes, row.hash, first.hash));
-    }
-}
-
 std::vector<NumberFormat> parse_formats(const std::string& list) {
     std::vector<NumberFormat> formats;
     std::istringstream words(list);
@@ -133,9 +82,59 @@ std::vector<NumberFormat> parse_formats(const std::string& list) {
     return formats;
 }
 
+// Refuses what could not be compared or written in the end. Returns the baseline, empty where there is none to be.
+BenchReport checked_files(const BenchCommand& command) {
+    if (!(command.tolerance >= 0 && command.tolerance <= 100))
+        throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance));
+    if (!command.report.empty()) check_writable(command.report);
+    if (command.baseline.empty()) return {};
+    if (!command.report.empty() &&
+        std::filesystem::weakly_canonical(command.report) == std::filesystem::weakly_canonical(command.baseline))
+        throw UserError(
+            fmt::format("{}: named by --report and --compare; a baseline is not written over by the run "
+                        "that is held against it: name another report",
+                        command.report));
+    return read_bench_report(command.baseline);
+}
+
+void check_comparable(const BenchCommand& command, const BenchReport& baseline, const BenchReport& now) {
+    if (command.baseline.empty() || rows_in_common(baseline, now) > 0) return;
+    const BenchMeasurement &was = baseline.rows.front(), &is = now.rows.front();
+    throw UserError(fmt::format(
+        "{}: no row of this run is in it: it has {}, {}, {}, {}, {} lanes, group {}; this run {}, {}, {}, {}, {} "
+        "lanes, group {}; remedy: the same scene and options, or a new baseline by raya bench --report",
+        command.baseline, was.scene, was.size, was.array, was.format, was.lanes, was.group_size, is.scene, is.size,
+        is.array, is.format, is.lanes, is.group_size));
+}
+
+void finish(const BenchCommand& command, const BenchReport& baseline, const BenchReport& now) {
+    if (!command.report.empty()) write_whole_file(command.report, bench_report_text(now));
+    if (command.baseline.empty()) return;
+    const BenchComparison result = compare_bench(baseline, now, command.tolerance);
+    fmt::print("\nagainst {}, which may be {} % faster:\n{}", command.baseline, command.tolerance, result.text);
+    std::fflush(stdout);
+    if (result.failed())
+        throw CheckFailure{fmt::format("{}: of {} rows {} slower by more than {} %, {} with another image",
+                                       command.baseline, result.compared, result.slower, command.tolerance,
+                                       result.other_images)};
+    fmt::print("{} rows compared, none slower by more than {} %, the same images\n", result.compared,
+               command.tolerance);
+}
+
+std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session, const Scene& scene,
+                                   const RingSettings& settings, const std::vector<NumberFormat>& formats) {
+    std::vector<BenchRow> rows;
+    for (const NumberFormat& format : formats)
+        for (const std::uint32_t lanes : command.render.lanes ? std::vector{*command.render.lanes} : command.lanes)
+            rows.push_back(prepare_row(session, scene, settings, format, lanes));
+    check_rows(rows);
+    return rows;
+}
+
 void bench(BenchCommand command) {
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
+    const BenchReport baseline = checked_files(command);
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();
@@ -146,17 +145,15 @@ void bench(BenchCommand command) {
     if (settings.antialias.method != AntialiasMethod::kNone)
         throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
     Session session(choose_device(command.render.device));
-    std::vector<BenchRow> rows;
-    for (const NumberFormat& format : formats)
-        for (const std::uint32_t lanes : command.render.lanes ? std::vector{*command.render.lanes} : command.lanes)
-            rows.push_back(prepare_row(session, scene, settings, format, lanes));
-    check_rows(rows);
+    std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
+    check_comparable(command, baseline, bench_report(rows, scene, settings, session.device()));
     take_samples(rows, command.samples);
     fmt::print("{} on {}: {} x {} pixels, {} PEs, {} bounces, {} rays; {} samples of 20 ms or more after a warm-up\n",
                scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
                settings.bounces, ray_count(rows.front().warm_up.all.events), command.samples);
     print_rows(rows);
     print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())), command.samples);
+    finish(command, baseline, bench_report(rows, scene, settings, session.device()));
 }
 
 }  // namespace
@@ -171,6 +168,18 @@ void add_bench_command(CLI::App& program) {
     command
         ->add_option("--samples", options->samples, "Samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--report", options->report, "Write the rows, for a later --compare")->type_name("FILE.json");
+    command
+        ->add_option("--compare", options->baseline,
+                     "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
+                     "image another one")
+        ->type_name("FILE.json");
+    command
+        ->add_option("--tolerance", options->tolerance,
+                     "With --compare: percent of its rate, 0..100, that a row may lose; it is slower where its best "
+                     "and its median have both lost more")
+        ->type_name("PERCENT")
         ->capture_default_str();
     command->get_option("--format")
         ->description(

@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <new>
 
 #include "error.hpp"
+#include "report/interruption.hpp"
 
 namespace raya {
 namespace {
@@ -20,11 +22,14 @@ int fail(const char* kind, const std::exception& error, int code) {
 }  // namespace
 
 int run_program(int argc, char** argv) {
+    end_cleanly_when_interrupted();
     CLI::App program{"raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.",
                      "raya"};
     program.require_subcommand(1);
     program.set_version_flag("--version", "raya " RAYA_VERSION);
-    program.footer("Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 1 a fault of raya's own.");
+    program.footer(
+        "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's "
+        "own.");
     add_render_command(program);
     add_devices_command(program);
     add_generate_command(program);
@@ -39,6 +44,12 @@ int run_program(int argc, char** argv) {
         return fail("", error, kExitUserError);
     } catch (const DeviceError& error) {
         return fail("", error, kExitDeviceError);
+    } catch (const CheckFailure& failure) {
+        if (!failure.summary.empty()) fmt::print(stderr, "raya: {}\n", failure.summary);
+        return kExitCheckFailed;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "raya: out of memory on the host; remedy: fewer pixels, a smaller scene, or more memory\n");
+        return kExitUserError;
     } catch (const std::exception& error) {
         return fail("internal error: ", error, kExitBug);
     }

@@ -1,5 +1,6 @@
 // The commands of raya. Each file of this folder adds one to the parser and runs it; nothing else knows them.
 #pragma once
+#include <string>
 
 namespace CLI {
 class App;
@@ -7,8 +8,15 @@ class App;
 
 namespace raya {
 
+inline constexpr int kExitCheckFailed = 4;
+
+/// The command did its work, and what it was asked to check does not hold. What was found is printed already.
+struct CheckFailure {
+    std::string summary{};  // printed on stderr unless empty
+};
+
 /// Parses the command line, runs the command and returns the exit code: 0 done, 2 for a mistake in options or input, 3
-/// for trouble with the device, 1 for a fault of our own. Messages go to stderr.
+/// for trouble with the device, 4 for a check that failed, 1 for a fault of our own. Messages go to stderr.
 int run_program(int argc, char** argv);
 
 void add_render_command(CLI::App& program);

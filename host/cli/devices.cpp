@@ -34,7 +34,8 @@ void list_devices() {
     for (const std::string& version : versions) fmt::print("{}\n", version);
     fmt::print(
         "\nlanes, group: what raya chooses unless given. --device takes a number or a part of a name; so does "
-        "RAYA_DEVICE.\n");
+        "RAYA_DEVICE.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and stands in the report, e.g. "
+        "-cl-opt-disable where a compiler is in doubt.\n");
 }
 
 }  // namespace

@@ -7,10 +7,12 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <system_error>
 
 #include "error.hpp"
+#include "report/interruption.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;
@@ -95,18 +97,25 @@ int write_and_close(int descriptor, std::string_view bytes) {
     return error;
 }
 
+/// A new file beside `target`, which an interruption removes. The name is short, so that it fits wherever the target's
+/// own name does.
 struct TemporaryFile {
     fs::path path;
+    FileInProgress in_progress;  // before the file exists: an interruption may come at any time
     int descriptor;
+
+    explicit TemporaryFile(const fs::path& name)
+        : path(name),
+          in_progress(path),
+          descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode)) {}
 };
 
-/// Opens a new file beside `target`. The name is short, so that it fits wherever the target's own name does.
-TemporaryFile open_temporary(const fs::path& target, const fs::path& shown) {
+std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::path& shown) {
     static std::atomic<unsigned> counter{0};
     while (true) {
-        const fs::path path = folder_of(target) / fmt::format(".raya-{}-{}.tmp", ::getpid(), counter++);
-        const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
-        if (descriptor >= 0) return {path, descriptor};
+        auto file =
+            std::make_unique<TemporaryFile>(folder_of(target) / fmt::format(".raya-{}-{}.tmp", ::getpid(), counter++));
+        if (file->descriptor >= 0) return file;
         if (errno != EEXIST) refuse(shown, errno);
     }
 }
@@ -124,11 +133,11 @@ void check_writable(const fs::path& path) { checked_target(path); }
 void write_whole_file(const fs::path& path, std::string_view bytes) {
     const Target target = checked_target(path);
     if (target.direct) return write_direct(path, bytes);
-    const TemporaryFile temporary = open_temporary(target.file, path);
-    int error = write_and_close(temporary.descriptor, bytes);
-    if (error == 0 && std::rename(temporary.path.c_str(), target.file.c_str()) != 0) error = errno;
+    const auto temporary = open_temporary(target.file, path);
+    int error = write_and_close(temporary->descriptor, bytes);
+    if (error == 0 && std::rename(temporary->path.c_str(), target.file.c_str()) != 0) error = errno;
     if (error == 0) return;
-    ::unlink(temporary.path.c_str());
+    ::unlink(temporary->path.c_str());
     refuse(path, error);
 }
 

@@ -13,7 +13,7 @@ void check_writable(const std::filesystem::path& path);
 /// Writes `bytes` to `path`: to a temporary name in the same folder, then renamed, so that nobody ever sees half a file
 /// and an old file stays as it was until the new one is complete. A symbolic link is followed; a device or a pipe
 /// (`/dev/stdout`) is written directly, as there is nothing to rename. Throws UserError with file, reason and remedy,
-/// and then leaves nothing behind.
+/// and then leaves nothing behind; nor does an interruption (interruption.hpp).
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace raya

@@ -1,9 +1,13 @@
 #include "ring/ring_renderer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
+#include "error.hpp"
 #include "ring/mapping.hpp"
+#include "ring/ring_plan.hpp"
 
 namespace raya {
 namespace {
@@ -16,22 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-JobSettings job_settings(const RingSettings& settings) {
-    return {settings.mapping, settings.sampling, settings.bounces, cycles_of_events(), settings.format};
-}
-
-// The settings with lanes and group size chosen, refused before anything is packed or taken if the kernels cannot be
-// built with them.
-RingSettings checked(RingSettings settings, const DeviceInfo& device) {
-    check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
-    if (!settings.kernels.lanes) settings.kernels.lanes = default_lanes(device);
-    if (!settings.kernels.group_size) settings.kernels.group_size = default_group_size(device);
-    check_kernel_options(
-        {.lanes = settings.kernels.lanes, .group_size = settings.kernels.group_size, .bounces = settings.bounces},
-        device);
-    return settings;
-}
-
 PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings) {
     const StepLog::Step step = session.step("pack scene");
     return pack_job(scene, job_settings(settings));
@@ -41,42 +29,6 @@ AccelSummary with_grid(const Session& session, PackedJob& job, const RingSetting
     if (!settings.accel.grid) return {};
     const StepLog::Step step = session.step("divide scene");
     return append_grid(job, accel_partition(job, settings.format, settings.accel));
-}
-
-// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress
-// bar moves, Ctrl-C is heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few wait
-// for the last.
-std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes,
-                           std::uint32_t share) {
-    if (settings.pixels_per_launch) return settings.pixels_per_launch;
-    constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
-    constexpr double kRaysPerPixel = 6;      // of the project's scenes
-    const double tests_of_one = kRaysPerPixel * static_cast<double>(objects) * settings.mapping.pes;
-    const auto affordable = static_cast<std::uint32_t>(std::min(kTestsPerLaunch / tests_of_one, double(share)));
-    return std::clamp(affordable, std::min(8 * lanes, share), share);
-}
-
-// Local memory is as fast as a CPU's other memory, and each launch copies the words into it for each PE: where
-// they are many and few of them are read, they stay where they are.
-bool words_local(const PackedJob& job, const DeviceInfo& device, bool accel) {
-    constexpr std::size_t kMostCopied = 64 * 1024;
-    const std::size_t bytes = 4 * job.words.size() + sizeof(cl_uint);
-    return bytes <= (accel ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
-}
-
-KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const Scene& scene,
-                             const DeviceInfo& device) {
-    return {.lanes = settings.kernels.lanes,
-            .group_size = settings.kernels.group_size,
-            .bounces = settings.bounces,
-            .format = settings.format,
-            .words_local = words_local(job, device, settings.accel.grid),
-            .accel = settings.accel.grid,
-            .filter = settings.kernels.filter && !scene.spheres.empty() &&
-                      sphere_filter_holds(settings.format, scene_extent(scene)),
-            .polygons = job.has_polygons,
-            .patches = job.has_patches,
-            .cones = job.has_cones};
 }
 
 // Calls `move` for each pixel of the PEs' blocks, which start at pixel `block` of each share, with its number in the
@@ -91,6 +43,18 @@ void for_each_pixel(const raya_mapping& m, std::uint32_t block, std::uint32_t ca
             move(std::size_t{pe} * capacity + (k - block), std::size_t{at.row} * m.width + at.column);
         }
     }
+}
+
+// Each pixel has one primary ray, counted when its lane takes it. Some devices end long loops early and say nothing
+// (Mesa's llvmpipe after 65,535 turns of a work-item); the pixels that they leave out would be wrong.
+void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const DeviceInfo& device) {
+    const std::uint64_t pixels = std::uint64_t{m.width} * m.height, traced = first_pass[RAYA_PRIMARY];
+    if (traced == pixels) return;
+    throw DeviceError(
+        fmt::format("{} {} ended the trace kernel after {} of {} pixels; remedy: see what raya verify finds; more PEs "
+                    "(--pes), which "
+                    "leave each work-item fewer pixels and do not change the image, or another device",
+                    device.platform, device.name, traced, pixels));
 }
 
 }  // namespace
@@ -272,6 +236,7 @@ void RingRenderer::collect_events(RingResult& result) {
         result.phases[i].load = load_of(std::move(loads));
     }
     result.all.load = load_of(std::move(all));
+    check_all_traced(result.phases.front().events, settings_.mapping, session_.device());
 }
 
 // Work-groups run to their end, so what a PE takes while the machine runs cannot be seen on a device; but it follows

@@ -3,11 +3,14 @@
 #pragma once
 #include <fcntl.h>
 #include <grp.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +19,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,7 +35,10 @@ struct Outcome {
 /// What a run finds around it.
 struct Surroundings {
     std::vector<std::pair<std::string, std::string>> variables{};  // set, on top of this process's own
-    bool as_nobody = false;  // if this process is root's, run as a user whom permissions bind
+    bool as_nobody = false;   // if this process is root's, run as a user whom permissions bind
+    rlim_t largest_file = 0;  // bytes that a file may grow to, 0: any; a longer one fails as a full disk does
+    int signal = 0;           // sent to the program, unless it has ended before
+    int signal_after_ms = 0;  // after it has begun to handle that signal
 };
 
 namespace run_program_detail {
@@ -78,6 +85,37 @@ inline void leave_root() {
     if (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0) ::_exit(126);
 }
 
+inline void limit_files(rlim_t bytes) {
+    if (bytes == 0) return;
+    std::signal(SIGXFSZ, SIG_IGN);  // kept by exec: writes fail with EFBIG
+    const rlimit limit{bytes, bytes};
+    if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
+}
+
+/// Whether the child is raya by now and has a handler for the signal (SigCgt of proc(5)); before, it has this
+/// process's.
+inline bool catches(pid_t child, int signal) {
+    const std::string folder = "/proc/" + std::to_string(child);
+    if (std::filesystem::read_symlink(folder + "/exe") == std::filesystem::read_symlink("/proc/self/exe")) return false;
+    std::ifstream status(folder + "/status");
+    for (std::string word; status >> word;) {
+        if (word != "SigCgt:") continue;
+        status >> word;
+        return (std::stoull(word, nullptr, 16) >> (signal - 1) & 1) != 0;
+    }
+    return false;
+}
+
+/// Sends the signal in its time. The child has not been waited for, so its number is still its own.
+inline void send_signal(pid_t child, const Surroundings& around) {
+    using namespace std::chrono;
+    if (around.signal == 0) return;
+    const auto late = steady_clock::now() + seconds(20);
+    while (!catches(child, around.signal) && steady_clock::now() < late) std::this_thread::sleep_for(milliseconds(5));
+    std::this_thread::sleep_for(milliseconds(around.signal_after_ms));
+    ::kill(child, around.signal);
+}
+
 }  // namespace run_program_detail
 
 /// Runs raya with these arguments and no input, without a shell, and waits for its end. std::runtime_error if it cannot
@@ -98,11 +136,13 @@ inline Outcome run_raya(std::vector<std::string> arguments, const Surroundings& 
         ::dup2(::fileno(input.get()), STDIN_FILENO);
         ::dup2(::fileno(out.get()), STDOUT_FILENO);
         ::dup2(::fileno(err.get()), STDERR_FILENO);
+        detail::limit_files(around.largest_file);
         if (around.as_nobody) detail::leave_root();
         ::fexecve(program, argv.data(), envp.data());
         ::_exit(127);
     }
     if (program >= 0) ::close(program);
+    if (child > 0) detail::send_signal(child, around);
     int status = 0;
     while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
     outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

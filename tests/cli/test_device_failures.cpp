@@ -28,6 +28,38 @@ TEST_CASE("a kernel that does not compile ends with device, options and build lo
                    "no_such_type"});
 }
 
+TEST_CASE("a device that ends a loop early is found by its pixels, and nothing is written", "[cli]") {
+    const ScratchFolder kernels, outputs;
+    const std::string broken = kernels / "kernels", planes = scene_file("planes");
+    copy_kernels(broken, "ring/trace.cl", "");
+    std::string text = file_contents(kernels / "kernels/ring/trace.cl");
+    const std::string end = "store.end = min(end, raya_share_size(store.share));";
+    REQUIRE(contains(text, end));
+    text.insert(text.find(end) + end.size(), " store.end -= pe == 3 && store.end > 0;");
+    std::ofstream(kernels / "kernels/ring/trace.cl") << text;
+    for (const char* method : {"none", "supersample"}) {
+        CAPTURE(method);
+        check_refused(outputs,
+                      render_into(outputs, planes,
+                                  {"--size", "16", "--pes", "16", "--kernel-dir", broken, "--antialias", method}),
+                      3, {"ended the trace kernel after 255 of 256 pixels", "remedy: ", "raya verify", "--pes"});
+    }
+}
+
+TEST_CASE("RAYA_BUILD_OPTIONS goes to every build, into the report and into the message of a failed one", "[cli]") {
+    const ScratchFolder outputs;
+    const Outcome run =
+        run_raya(render_into(outputs, scene_file("planes"), {"--size", "16", "--quiet", "--lanes", "4"}),
+                 {.variables = {{"RAYA_BUILD_OPTIONS", "-cl-opt-disable -DNO_MATTER=1"}}});
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK(contains(file_contents(outputs / "x.json"), "-cl-opt-disable -DNO_MATTER=1\""));
+    const ScratchFolder none;
+    check_refused(none, render_into(none, scene_file("planes"), {"--size", "16"}), 3,
+                  {"building program 'ring/trace.cl'", "-no-such-option"},
+                  {.variables = {{"RAYA_BUILD_OPTIONS", "-no-such-option"}}});
+}
+
 TEST_CASE("an unknown device ends with the list of those that there are", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");

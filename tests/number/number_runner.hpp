@@ -116,7 +116,6 @@ class NumberRunner {
                                             fmt::format("-DRAYA_EXACT_FMA={:d}", session_.device().fused_multiply_add)};
         if (exact) options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
         if (build.refines_division) options.emplace_back("-DRAYA_TEST_DEVICE_ERROR");
-        if (const char* more = std::getenv("RAYA_NUMBER_OPTIONS")) options.emplace_back(more);
         return session_.build("operations.cl", source(build.folder), options);
     }
 

@@ -1,0 +1,99 @@
+#include "report/bench_compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include "report/table.hpp"
+
+namespace raya {
+namespace {
+
+using Rows = std::vector<BenchMeasurement>;
+
+/// What was measured, without how it went.
+auto key(const BenchMeasurement& r) {
+    return std::tie(r.kernel, r.scene, r.size, r.array, r.format, r.lanes, r.group_size);
+}
+
+const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wanted) {
+    const auto found = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return key(row) == key(wanted); });
+    return found == rows.end() ? nullptr : &*found;
+}
+
+/// Percent of the rate: -10 where a tenth is lost.
+double change(double before, double now) { return 100 * (now / before - 1); }
+
+std::string percent(double value) { return fmt::format("{:+.1f} %", value); }
+
+std::vector<std::string> named(const BenchMeasurement& row) {
+    return {row.kernel, row.scene, row.size, row.format, std::to_string(row.lanes), std::to_string(row.group_size)};
+}
+
+std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& more) {
+    first.insert(first.end(), more.begin(), more.end());
+    return first;
+}
+
+std::string rate(double value) { return fmt::format("{:.1f}", value); }
+
+/// The verdict on a row that both sides have, counted.
+std::string verdict(BenchComparison& sum, const BenchMeasurement& before, const BenchMeasurement& now,
+                    double tolerance) {
+    const double best = change(before.best_rate(), now.best_rate());
+    const double median = change(before.median_rate(), now.median_rate());
+    ++sum.compared;
+    if (now.hash != before.hash) {
+        ++sum.other_images;
+        return fmt::format("OTHER IMAGE: {}, was {}", now.hash.substr(0, 8), before.hash.substr(0, 8));
+    }
+    if (std::max(best, median) < -tolerance) {
+        ++sum.slower;
+        return "SLOWER";
+    }
+    return std::min(best, median) > tolerance ? "faster" : "as before";
+}
+
+/// The two sides' words for the same thing, where they differ.
+std::string difference(const char* what, const std::string& before, const std::string& now) {
+    return before == now ? "" : fmt::format("warning: another {}: {}, the baseline's is {}\n", what, now, before);
+}
+
+}  // namespace
+
+int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
+    return static_cast<int>(std::count_if(now.rows.begin(), now.rows.end(),
+                                          [&](const auto& row) { return find_row(baseline.rows, row) != nullptr; }));
+}
+
+BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance) {
+    BenchComparison sum;
+    sum.text = difference("device", baseline.platform + " " + baseline.device, now.platform + " " + now.device) +
+               difference("driver", baseline.version + ", " + baseline.driver, now.version + ", " + now.driver) +
+               difference("version of raya", baseline.raya, now.raya);
+    std::vector<std::vector<std::string>> table = {{"kernel", "scene", "size", "format", "lanes", "group",
+                                                    "best Mrays/s", "was", "change", "median", "was", "change", ""}};
+    for (const BenchMeasurement& row : now.rows) {
+        const BenchMeasurement* before = find_row(baseline.rows, row);
+        if (before == nullptr) {
+            table.push_back(joined(named(row), {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-",
+                                                "not in the baseline"}));
+            continue;
+        }
+        table.push_back(joined(
+            named(row),
+            {rate(row.best_rate()), rate(before->best_rate()), percent(change(before->best_rate(), row.best_rate())),
+             rate(row.median_rate()), rate(before->median_rate()),
+             percent(change(before->median_rate(), row.median_rate())), verdict(sum, *before, row, tolerance)}));
+    }
+    for (const BenchMeasurement& row : baseline.rows)
+        if (find_row(now.rows, row) == nullptr)
+            table.push_back(joined(named(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-",
+                                                "in the baseline alone"}));
+    sum.text += text_table(table);
+    return sum;
+}
+
+}  // namespace raya

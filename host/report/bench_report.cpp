@@ -1,0 +1,118 @@
+#include "report/bench_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "error.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kKind = "raya bench";
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
+    throw UserError(fmt::format("{}: {}; remedy: make a baseline with: raya bench --report {}", path.string(), reason,
+                                path.string()));
+}
+
+Json row_json(const BenchMeasurement& row) {
+    return {{"kernel", row.kernel},
+            {"scene", row.scene},
+            {"size", row.size},
+            {"array", row.array},
+            {"format", row.format},
+            {"lanes", row.lanes},
+            {"group", row.group_size},
+            {"rays", row.rays},
+            {"mrays_per_s", {{"best", row.best_rate()}, {"median", row.median_rate()}}},
+            {"ms", {{"best", 1e3 * row.best_s}, {"median", 1e3 * row.median_s}}},
+            {"samples", row.samples},
+            {"hash", row.hash},
+            {"build_options", row.build_options}};
+}
+
+BenchMeasurement row_of(const Json& json) {
+    return {.kernel = json.at("kernel"),
+            .scene = json.at("scene"),
+            .size = json.at("size"),
+            .array = json.at("array"),
+            .format = json.at("format"),
+            .lanes = json.at("lanes"),
+            .group_size = json.at("group"),
+            .rays = json.at("rays"),
+            .best_s = json.at("ms").at("best").get<double>() * 1e-3,
+            .median_s = json.at("ms").at("median").get<double>() * 1e-3,
+            .samples = json.at("samples"),
+            .hash = json.at("hash"),
+            .build_options = json.at("build_options")};
+}
+
+BenchReport report_of(const Json& json) {
+    const Json& device = json.at("device");
+    BenchReport report{.raya = json.at("raya"),
+                       .device = device.at("name"),
+                       .platform = device.at("platform"),
+                       .version = device.at("version"),
+                       .driver = device.at("driver"),
+                       .rows = {}};
+    for (const Json& row : json.at("rows")) report.rows.push_back(row_of(row));
+    return report;
+}
+
+std::string contents(const fs::path& path) {
+    std::error_code error;
+    if (!fs::exists(path, error)) refuse(path, "no such file");
+    if (fs::is_directory(path, error)) refuse(path, "it is a folder");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) refuse(path, "cannot be read: " + std::generic_category().message(errno));
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool can_be_a_time(double seconds) { return std::isfinite(seconds) && seconds > 0; }
+
+}  // namespace
+
+std::string bench_report_text(const BenchReport& report) {
+    Json rows = Json::array();
+    for (const BenchMeasurement& row : report.rows) rows.push_back(row_json(row));
+    const Json json = {{"kind", kKind},
+                       {"raya", report.raya},
+                       {"device",
+                        {{"name", report.device},
+                         {"platform", report.platform},
+                         {"version", report.version},
+                         {"driver", report.driver}}},
+                       {"rows", rows}};
+    return json.dump(2) + "\n";
+}
+
+BenchReport read_bench_report(const fs::path& path) {
+    BenchReport report;
+    try {
+        const Json json = Json::parse(contents(path));
+        if (!json.is_object() || json.value("kind", Json()) != kKind)
+            refuse(path, "it is JSON, but no report of raya bench");
+        report = report_of(json);
+    } catch (const Json::parse_error& error) {
+        refuse(path, fmt::format("it is no JSON (at byte {})", error.byte));
+    } catch (const Json::exception& error) {
+        refuse(path, fmt::format("it is no whole report of raya bench: {}", error.what()));
+    }
+    if (report.rows.empty()) refuse(path, "it has no rows");
+    for (const BenchMeasurement& row : report.rows)
+        if (!can_be_a_time(row.best_s) || !can_be_a_time(row.median_s) || row.rays == 0)
+            refuse(path,
+                   fmt::format("row {} of {} lanes has rays or times that are not positive", row.format, row.lanes));
+    return report;
+}
+
+}  // namespace raya

@@ -1,0 +1,40 @@
+// What `raya bench` measured, as a file that a later run can be compared with.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace raya {
+
+/// One kernel with one set of options. All but the times and the image's hash say what was measured: two rows that
+/// agree there can be compared.
+struct BenchMeasurement {
+    std::string kernel, scene;  // the scene's file without folder
+    std::string size;           // pixels, "512x512"
+    std::string array;          // PEs, mapping, bounces, grid: "256 PEs, cyclic:16, 8 bounces, accel none"
+    std::string format;
+    std::uint32_t lanes = 0, group_size = 0;
+    std::uint64_t rays = 0;                // of one image
+    double best_s = 0, median_s = 0;       // kernel time of one image, > 0
+    int samples = 0;                       // of which these are the best and the median
+    std::string hash, build_options = {};  // of the image; as the compiler saw them
+
+    double best_rate() const { return static_cast<double>(rays) / best_s * 1e-6; }  // Mrays/s
+    double median_rate() const { return static_cast<double>(rays) / median_s * 1e-6; }
+};
+
+struct BenchReport {
+    std::string raya;  // version
+    std::string device, platform, version, driver;
+    std::vector<BenchMeasurement> rows;
+};
+
+/// The report as JSON text, with `"kind": "raya bench"` first, by which it is known again.
+std::string bench_report_text(const BenchReport& report);
+
+/// Reads what bench_report_text() wrote. Throws UserError with file, reason and remedy for a file that cannot be read,
+/// is no such report, or holds a row that cannot be one.
+BenchReport read_bench_report(const std::filesystem::path& path);
+
+}  // namespace raya

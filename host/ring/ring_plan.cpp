@@ -1,0 +1,57 @@
+#include "ring/ring_plan.hpp"
+
+#include <algorithm>
+
+namespace raya {
+namespace {
+
+// Local memory is as fast as a CPU's other memory, and each launch copies the words into it for each PE: where
+// they are many and few of them are read, they stay where they are.
+bool words_local(const PackedJob& job, const DeviceInfo& device, bool accel) {
+    constexpr std::size_t kMostCopied = 64 * 1024;
+    const std::size_t bytes = 4 * job.words.size() + sizeof(cl_uint);
+    return bytes <= (accel ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
+}
+
+}  // namespace
+
+JobSettings job_settings(const RingSettings& settings) {
+    return {settings.mapping, settings.sampling, settings.bounces, cycles_of_events(), settings.format};
+}
+
+RingSettings checked(RingSettings settings, const DeviceInfo& device) {
+    check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
+    if (!settings.kernels.lanes) settings.kernels.lanes = default_lanes(device);
+    if (!settings.kernels.group_size) settings.kernels.group_size = default_group_size(device);
+    check_kernel_options(
+        {.lanes = settings.kernels.lanes, .group_size = settings.kernels.group_size, .bounces = settings.bounces},
+        device);
+    return settings;
+}
+
+std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes,
+                           std::uint32_t share) {
+    if (settings.pixels_per_launch) return settings.pixels_per_launch;
+    constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
+    constexpr double kRaysPerPixel = 6;      // of the project's scenes
+    const double tests_of_one = kRaysPerPixel * static_cast<double>(objects) * settings.mapping.pes;
+    const auto affordable = static_cast<std::uint32_t>(std::min(kTestsPerLaunch / tests_of_one, double(share)));
+    return std::clamp(affordable, std::min(8 * lanes, share), share);
+}
+
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const Scene& scene,
+                             const DeviceInfo& device) {
+    return {.lanes = settings.kernels.lanes,
+            .group_size = settings.kernels.group_size,
+            .bounces = settings.bounces,
+            .format = settings.format,
+            .words_local = words_local(job, device, settings.accel.grid),
+            .accel = settings.accel.grid,
+            .filter = settings.kernels.filter && !scene.spheres.empty() &&
+                      sphere_filter_holds(settings.format, scene_extent(scene)),
+            .polygons = job.has_polygons,
+            .patches = job.has_patches,
+            .cones = job.has_cones};
+}
+
+}  // namespace raya

@@ -1,0 +1,24 @@
+// How a render on a ring machine is set up on a device: what is chosen where the user leaves the choice.
+#pragma once
+#include "cl/device.hpp"
+#include "kernels/kernel_options.hpp"
+#include "ring/ring_renderer.hpp"
+#include "scene/packer.hpp"
+
+namespace raya {
+
+JobSettings job_settings(const RingSettings& settings);
+
+/// The settings with lanes and group size chosen. UserError, before anything is packed or taken, if the kernels cannot
+/// be built with them.
+RingSettings checked(RingSettings settings, const DeviceInfo& device);
+
+/// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress
+/// bar moves, Ctrl-C is heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few
+/// wait for the last.
+std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
+
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const Scene& scene,
+                             const DeviceInfo& device);
+
+}  // namespace raya

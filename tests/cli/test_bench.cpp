@@ -1,0 +1,95 @@
+// raya bench against an earlier report: what it writes, what it holds against what, and its exit codes.
+#include <fstream>
+
+#include "cli/refusals.hpp"
+#include "cli/render_files.hpp"
+
+namespace raya {
+namespace {
+
+/// A bench of one small row that takes well under a second.
+Words small_bench(const Words& more) {
+    Words arguments = {"bench", "--size", "32", "--pes", "32", "--lanes", "4", "--format", "fp32", "--samples", "3"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+nlohmann::json json_of(const std::filesystem::path& path) { return nlohmann::json::parse(file_contents(path)); }
+
+/// A copy of the report in which the row was `factor` times as fast, or another image.
+std::string changed(const ScratchFolder& folder, const std::string& name, double factor, const std::string& hash = {}) {
+    nlohmann::json json = json_of(folder / "base.json");
+    for (const char* part : {"best", "median"})
+        json["rows"][0]["ms"][part] = json["rows"][0]["ms"][part].get<double>() / factor;
+    if (!hash.empty()) json["rows"][0]["hash"] = hash;
+    std::ofstream(folder / name) << json;
+    return folder / name;
+}
+
+TEST_CASE("bench --report writes its rows, --compare holds a later run against them", "[cli]") {
+    const ScratchFolder folder;
+    const std::string base = folder / "base.json";
+    const Outcome first = run_raya(small_bench({"--report", base}));
+    INFO(first.told());
+    REQUIRE(first.code == 0);
+    const nlohmann::json report = json_of(base);
+    CHECK(report["kind"] == "raya bench");
+    CHECK(report["raya"] == RAYA_VERSION);
+    for (const char* key : {"name", "platform", "version", "driver"}) CHECK(!report["device"][key].empty());
+    REQUIRE(report["rows"].size() == 1);
+    const nlohmann::json& row = report["rows"][0];
+    CHECK(row["kernel"] == "trace");
+    CHECK(row["scene"] == "spheres.nff");
+    CHECK(row["size"] == "32x32");
+    CHECK(row["array"] == "32 PEs, cyclic:16, 8 bounces, accel none");
+    CHECK(row["format"] == "fp32");
+    CHECK(row["lanes"] == 4);
+    CHECK(row["samples"] == 3);
+    CHECK(row["ms"]["best"] <= row["ms"]["median"]);
+    CHECK(row["mrays_per_s"]["best"].get<double>() ==
+          Approx(row["rays"].get<double>() / row["ms"]["best"].get<double>() * 1e-3));
+    CHECK_THAT(row["build_options"].get<std::string>(), Catch::Contains("-DRAYA_LANES=4"));
+    // Against a row a thousand times slower nothing can be slower.
+    const Outcome second = run_raya(small_bench({"--compare", changed(folder, "slow.json", 1e-3)}));
+    INFO(second.told());
+    CHECK(second.code == 0);
+    CHECK(second.err.empty());
+    CHECK_THAT(second.out,
+               Catch::Contains("faster") && Catch::Contains("1 rows compared, none slower by more than 10 %"));
+    // Against a row a thousand times faster it must be.
+    const Outcome third = run_raya(small_bench(
+        {"--compare", changed(folder, "fast.json", 1e3), "--tolerance", "50", "--report", folder / "now.json"}));
+    INFO(third.told());
+    CHECK(third.code == 4);
+    CHECK_THAT(third.out, Catch::Contains("-99.9 %") && Catch::Contains("SLOWER"));
+    CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 rows 1 slower by more than 50 %, 0 with another image"));
+    CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written all the same
+    const Outcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
+    INFO(fourth.told());
+    CHECK(fourth.code == 4);
+    CHECK_THAT(fourth.out, Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
+    // A run of other rows has nothing to be compared.
+    const Outcome fifth = run_raya(small_bench({"--compare", base, "--bounces", "1"}));
+    INFO(fifth.told());
+    CHECK(fifth.code == 2);
+    CHECK_THAT(fifth.err, Catch::Contains("no row of this run is in it") && Catch::Contains("8 bounces, accel none") &&
+                              Catch::Contains("1 bounces"));
+}
+
+TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cli]") {
+    const ScratchFolder folder, outputs;
+    std::ofstream(folder / "no.json") << "no JSON";
+    const std::string missing = folder / "missing.json";
+    check_refused(outputs, small_bench({"--compare", missing, "--report", outputs / "r.json"}), 2,
+                  {"no such file; remedy: make a baseline with: raya bench --report " + missing});
+    check_refused(outputs, small_bench({"--compare", folder / "no.json"}), 2, {"no.json: it is no JSON (at byte 2)"});
+    check_refused(outputs, small_bench({"--compare", folder / "no.json", "--report", folder / "no.json"}), 2,
+                  {"named by --report and --compare"});
+    check_refused(outputs, small_bench({"--report", outputs / "none" / "r.json"}), 2, {"does not exist"});
+    for (const char* tolerance : {"-1", "101", "nan"})
+        check_refused(outputs, small_bench({"--compare", folder / "no.json", "--tolerance", tolerance}), 2,
+                      {"--tolerance"});
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,136 @@
+// What can go wrong around a render once it has begun: a clear message, the right exit code, and no file, whole or not.
+#include <sys/mount.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "cli/refusals.hpp"
+
+namespace raya {
+namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+/// A device that fails as `fault` says, see cl_faults.cpp.
+Surroundings failing_device(const std::string& fault) {
+    return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
+                          {"RAYA_FAULT", fault},
+                          {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
+}
+
+Words small_render(const ScratchFolder& outputs, const Words& more = {}) {
+    Words options = {"--size", "16", "--lanes", "1", "--quiet"};
+    options.insert(options.end(), more.begin(), more.end());
+    return render_into(outputs, scene_file("planes"), options);
+}
+
+TEST_CASE("a device that runs out of memory ends with buffer, error and remedy", "[cli]") {
+    const ScratchFolder outputs;
+    for (const auto& [fault, name] :
+         {std::pair("1 -4", "CL_MEM_OBJECT_ALLOCATION_FAILURE"), std::pair("2 -5", "CL_OUT_OF_RESOURCES"),
+          std::pair("5 -6", "CL_OUT_OF_HOST_MEMORY")}) {
+        CAPTURE(fault);
+        check_refused(outputs, small_render(outputs), 3,
+                      {"allocating buffer '", "bytes)", name, "remedy: the device lacks memory", "fewer pixels"},
+                      failing_device(std::string("clCreateBuffer ") + fault));
+    }
+    // Drivers that take memory at the first use of a buffer say so at the launch.
+    check_refused(outputs, small_render(outputs), 3,
+                  {"CL_MEM_OBJECT_ALLOCATION_FAILURE", "trace", "remedy: the device lacks memory"},
+                  failing_device("clEnqueueNDRangeKernel 1 -4"));
+    // More than the device allows for one buffer: known before the driver is asked.
+    check_refused(outputs,
+                  {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "16384", "--machine", "grande"},
+                  3, {"bytes for one buffer", "remedy: fewer pixels"}, {.variables = {{"POCL_MEMORY_LIMIT", "1"}}});
+}
+
+TEST_CASE("a device that disappears in the middle of a render ends with the command and the error", "[cli]") {
+    const ScratchFolder outputs;
+    const Words message = {"CL_DEVICE_NOT_AVAILABLE", "another program may hold the device"};
+    for (const char* call : {"clCreateContext 1 -2", "clEnqueueNDRangeKernel 1 -2", "clEnqueueReadBuffer 1 -2"}) {
+        CAPTURE(call);
+        check_refused(outputs, small_render(outputs), 3, message, failing_device(call));
+    }
+    check_refused(outputs, small_render(outputs, {"--antialias", "filter"}), 3,
+                  {"CL_DEVICE_NOT_AVAILABLE", "'add_neighbours'"}, failing_device("clEnqueueNDRangeKernel 2 -2"));
+    check_refused(outputs,
+                  {"render", scene_file("planes"), "-o", outputs / "x.png", "--size", "16", "--lanes", "1", "--machine",
+                   "torus", "--nodes", "2x1x1"},
+                  3, message, failing_device("clEnqueueNDRangeKernel 9 -2"));
+}
+
+TEST_CASE("a host that runs out of memory ends with the remedy", "[cli]") {
+    const ScratchFolder outputs;
+    Words options = small_render(outputs);
+    options[std::find(options.begin(), options.end(), "--size") - options.begin() + 1] = "512";  // 3 MB of pixels
+    if (kSanitized)
+        WARN("skipped: the sanitizer has an allocator of its own");
+    else
+        check_refused(outputs, options, 2, {"raya: out of memory on the host; remedy: fewer pixels"},
+                      failing_device("new 1000000 0"));
+}
+
+TEST_CASE("without a fault the same runs end well: the tests above can fail", "[cli]") {
+    const ScratchFolder outputs;
+    const Outcome run = run_raya(small_render(outputs), failing_device("clCreateBuffer 1000000 -4"));
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK(outputs.entries() == 3);
+}
+
+TEST_CASE("a device that is there no more is named, with those that there are", "[cli]") {
+    const ScratchFolder outputs;
+    const Words with = small_render(outputs, {"--device", "basic"});
+    const Outcome there = run_raya(with, {.variables = {{"POCL_DEVICES", "basic"}}});
+    INFO(there.told());
+    REQUIRE(there.code == 0);
+    for (const auto& entry : std::filesystem::directory_iterator(outputs.path())) std::filesystem::remove(entry);
+    check_refused(outputs, with, 3, {"no OpenCL device matches 'basic'", "\n  0: "},
+                  {.variables = {{"POCL_DEVICES", "pthread"}}});
+}
+
+// An image of 3 MB; kernels and reports are far smaller.
+Words large_render(const std::string& image) {
+    return {"render", scene_file("planes"), "-o", image, "--size", "512", "--lanes", "4", "--quiet"};
+}
+
+TEST_CASE("a file that may not grow far enough ends with the reason and leaves nothing", "[cli]") {
+    const ScratchFolder outputs;
+    check_refused(outputs, large_render(outputs / "x.pfm"), 2, {"x.pfm", "File too large", "ulimit -f"},
+                  {.largest_file = 1 << 20});
+}
+
+TEST_CASE("a full disk ends with the reason and leaves nothing", "[cli]") {
+    const ScratchFolder outputs;
+    if (::mount("raya-test", outputs.path().c_str(), "tmpfs", 0, "size=1m") != 0) {
+        WARN("skipped: no small disk can be mounted here (root alone may): " << std::strerror(errno));
+        return;
+    }
+    check_refused(outputs, large_render(outputs / "x.pfm"), 2,
+                  {"x.pfm", "No space left on device", "make room there or name a file on another disk"});
+    ::umount(outputs.path().c_str());
+}
+
+TEST_CASE("Ctrl-C in a long render ends it at once, without a file", "[cli]") {
+    const ScratchFolder outputs;
+    // Minutes of work: by one lane, in a format that is slow.
+    const Words minutes = {"--size", "4096", "--lanes", "1", "--machine", "grande", "--format", "e8m21"};
+    for (const int signal : {SIGINT, SIGTERM}) {
+        for (const int after_ms : {0, 1500}) {  // while the kernel is built; while it runs
+            CAPTURE(signal, after_ms);
+            check_refused(outputs, render_into(outputs, scene_file("spheres"), minutes), 128 + signal,
+                          {"raya: interrupted\n"}, {.signal = signal, .signal_after_ms = after_ms});
+        }
+    }
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,165 @@
+// A report of raya bench survives its file, wrong files are refused, and a comparison fails exactly where it must.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "error.hpp"
+#include "report/bench_compare.hpp"
+#include "report/scratch_folder.hpp"
+
+namespace raya {
+namespace {
+using Catch::Matchers::Contains;
+
+BenchMeasurement row(std::uint32_t lanes, double best_ms, double median_ms) {
+    return {.kernel = "trace",
+            .scene = "spheres",
+            .size = "512x512",
+            .array = "256 PEs, cyclic:16, 8 bounces, accel none",
+            .format = "fp32",
+            .lanes = lanes,
+            .group_size = 1,
+            .rays = 1'000'000,
+            .best_s = best_ms * 1e-3,
+            .median_s = median_ms * 1e-3,
+            .samples = 7,
+            .hash = "0123456789abcdef",
+            .build_options = "-cl-std=CL1.2"};
+}
+
+BenchReport report(std::vector<BenchMeasurement> rows) {
+    return {.raya = "0.1.0",
+            .device = "cpu",
+            .platform = "PoCL",
+            .version = "OpenCL 3.0",
+            .driver = "3.1",
+            .rows = std::move(rows)};
+}
+
+std::string refusal(const ScratchFolder& folder, const std::string& text) {
+    std::ofstream(folder / "b.json") << text;
+    try {
+        read_bench_report(folder / "b.json");
+    } catch (const UserError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST_CASE("a bench report is read back as it was", "[bench]") {
+    const ScratchFolder folder;
+    std::mt19937 random(1);
+    for (int i = 0; i < 200; ++i) {
+        CAPTURE(i);
+        BenchReport written = report({});
+        for (unsigned n = 0; n < 1 + random() % 8; ++n) {
+            const auto ms = [&] { return 1e-3 * std::uniform_int_distribution(1, 1'000'000)(random); };
+            written.rows.push_back(row(n, ms(), ms()));
+            written.rows.back().rays = random();
+            written.rows.back().scene = "scene " + std::to_string(random());
+        }
+        std::ofstream(folder / "b.json") << bench_report_text(written);
+        const BenchReport read = read_bench_report(folder / "b.json");
+        CHECK(read.driver == written.driver);
+        REQUIRE(read.rows.size() == written.rows.size());
+        // Milliseconds in the file: what the second writing gives must be what the first gave, to a last bit.
+        CHECK(rows_in_common(read, written) == static_cast<int>(written.rows.size()));
+        const BenchComparison same = compare_bench(read, written, 1e-9);
+        CHECK(same.compared == static_cast<int>(written.rows.size()));
+        CHECK_FALSE(same.failed());
+    }
+}
+
+TEST_CASE("files that are no bench report are refused with a remedy", "[bench]") {
+    const ScratchFolder folder;
+    const std::string good = bench_report_text(report({row(1, 2, 3)}));
+    const auto changed = [&](const auto& change) {
+        nlohmann::json json = nlohmann::json::parse(good);
+        change(json);
+        return json.dump();
+    };
+    CHECK(refusal(folder, good) == "accepted");
+    CHECK_THROWS_WITH(read_bench_report(folder / "none.json"),
+                      Contains("none.json: no such file; remedy: make a baseline with: raya bench --report"));
+    CHECK_THROWS_WITH(read_bench_report(folder.path()), Contains("it is a folder"));
+    CHECK_THAT(refusal(folder, ""), Contains("it is no JSON (at byte 1)"));
+    CHECK_THAT(refusal(folder, "kernel,lanes\n"), Contains("it is no JSON (at byte 1)"));
+    CHECK_THAT(refusal(folder, good.substr(0, good.size() / 2)), Contains("it is no JSON"));
+    CHECK_THAT(refusal(folder, "[]"), Contains("it is JSON, but no report of raya bench"));
+    CHECK_THAT(refusal(folder, R"({"scene": "centre.nff"})"), Contains("no report of raya bench"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].clear(); })), Contains("it has no rows"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j.erase("device"); })), Contains("no whole report"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0].erase("hash"); })), Contains("hash"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0]["lanes"] = "many"; })), Contains("no whole report"));
+    for (const char* part : {"best", "median"})
+        for (const double bad : {0.0, -1.0})
+            CHECK_THAT(refusal(folder, changed([&](auto& j) { j["rows"][0]["ms"][part] = bad; })),
+                       Contains("rays or times that are not positive"));
+}
+
+TEST_CASE("a row is slower where best and median have both lost more than the tolerance", "[bench]") {
+    // Rates against 100 %: a row of 10 ms becomes one of 10 / share ms.
+    struct Case {
+        double best, median, tolerance;
+        bool slower;
+    };
+    const std::vector<Case> cases = {{1, 1, 10, false},       {0.89, 0.89, 10, true}, {0.91, 0.91, 10, false},
+                                     {0.5, 1, 10, false},     {1, 0.5, 10, false},    {0.91, 0.5, 10, false},
+                                     {0.89, 0.91, 10, false}, {2, 2, 0, false},       {0.99, 0.99, 0, true},
+                                     {0.89, 0.89, 12, false}, {0.01, 0.01, 98, true}, {0.01, 0.01, 100, false}};
+    for (const Case& c : cases) {
+        CAPTURE(c.best, c.median, c.tolerance);
+        const BenchComparison result =
+            compare_bench(report({row(4, 10, 12)}), report({row(4, 10 / c.best, 12 / c.median)}), c.tolerance);
+        CHECK(result.compared == 1);
+        CHECK(result.slower == (c.slower ? 1 : 0));
+        CHECK(result.other_images == 0);
+        CHECK(result.failed() == c.slower);
+        CHECK((result.text.find("SLOWER") != std::string::npos) == c.slower);
+    }
+}
+
+TEST_CASE("another image fails however fast it is", "[bench]") {
+    BenchMeasurement other = row(4, 1, 1);
+    other.hash = "fedcba9876543210";
+    const BenchComparison result = compare_bench(report({row(4, 10, 10)}), report({other}), 100);
+    CHECK(result.failed());
+    CHECK(result.other_images == 1);
+    CHECK(result.slower == 0);
+    CHECK_THAT(result.text, Contains("OTHER IMAGE: fedcba98, was 01234567"));
+}
+
+TEST_CASE("another device is a warning, rows of one side are a remark", "[bench]") {
+    BenchReport now = report({row(4, 10, 10), row(8, 10, 10)});
+    now.device = "gpu";
+    const BenchComparison result = compare_bench(report({row(1, 10, 10), row(4, 10, 10)}), now, 10);
+    CHECK_FALSE(result.failed());
+    CHECK(result.compared == 1);
+    CHECK_THAT(result.text, Contains("warning: another device: PoCL gpu, the baseline's is PoCL cpu\n") &&
+                                Contains("not in the baseline") && Contains("in the baseline alone"));
+    CHECK(result.text.find("another driver") == std::string::npos);
+    now.driver = "4.0";
+    CHECK_THAT(compare_bench(report({row(4, 10, 10)}), now, 10).text,
+               Contains("warning: another driver: OpenCL 3.0, 4.0, the baseline's is OpenCL 3.0, 3.1"));
+}
+
+TEST_CASE("rows are the same where everything but times and image is", "[bench]") {
+    const BenchReport baseline = report({row(4, 10, 10)});
+    const auto in_common = [&](const auto& change) {
+        BenchMeasurement other = row(4, 20, 30);
+        change(other);
+        return rows_in_common(baseline, report({other}));
+    };
+    CHECK(in_common([](auto& r) { r.hash = "x", r.build_options = "y", r.samples = 1; }) == 1);
+    CHECK(in_common([](auto& r) { r.kernel = "x"; }) == 0);
+    CHECK(in_common([](auto& r) { r.scene = "x"; }) == 0);
+    CHECK(in_common([](auto& r) { r.size = "x"; }) == 0);
+    CHECK(in_common([](auto& r) { r.array = "x"; }) == 0);
+    CHECK(in_common([](auto& r) { r.format = "x"; }) == 0);
+    CHECK(in_common([](auto& r) { r.lanes = 8; }) == 0);
+    CHECK(in_common([](auto& r) { r.group_size = 2; }) == 0);
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# tools/portability with stand-ins for raya and its test programs: what it makes of answers that are right, wrong, or missing.
+set -euo pipefail
+root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
+build=$(mktemp -d)
+trap 'rm -rf "$build"' EXIT
+mkdir "$build/tests"
+
+# A device under each implementation; another image under PoCL's basic device; an unexpected defect without optimiser.
+cat >"$build/raya" <<'RAYA'
+#!/usr/bin/env bash
+case $1 in
+    --version) echo "raya 0.0.0" ;;
+    verify)
+        [[ $2 == --help ]] && { echo "  --quick"; exit 0; }
+        status=PASS
+        [[ ${POCL_WORK_GROUP_METHOD-} == loops ]] && status=FAIL
+        echo '{"devices": [{"checks": [{"layer": "numbers", "name": "add", "status": "'$status'", "told": "bits differ"},
+            {"layer": "images", "name": "groups", "status": "SKIP", "told": "one work-item only"}]}]}' >"$4" ;;
+    devices) printf '#  device  platform\n0  toy  Toy\n\n0: OpenCL 3.0, driver 1\n' ;;
+    render)
+        while [[ $1 != --report ]]; do shift; done
+        echo '{"image": {"hash": "'"${POCL_DEVICES:-same}"'"}}' >"$2" ;;
+esac
+RAYA
+cat >"$build/tests/portability_defects" <<'DEFECTS'
+#!/usr/bin/env bash
+echo "long_loop, n = 9: expected failure, 8 in place of 9: a reason"
+[[ ${RAYA_BUILD_OPTIONS-} == "" ]]
+DEFECTS
+cat >"$build/tests/test_number" <<'VECTORS'
+#!/usr/bin/env bash
+echo "All tests passed ($RAYA_NUMBER_CASES assertions in 2 test cases)"
+VECTORS
+chmod +x "$build/raya" "$build"/tests/*
+
+fail() { echo "FAILED: $1"; echo "$out"; exit 1; }
+matrix() { code=0; out=$("$root/tools/portability" --build "$build" "$@" 2>/dev/null) || code=$?; }
+expect() { [[ $out == *"$1"* ]] || fail "no '$1'"; }  # expect TEXT
+
+matrix --only "PoCL loopvec"
+((code == 0)) || fail "exit code $code where all is right"
+expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | 1 known |"
+expect "PoCL loopvec, images: SKIP groups: one work-item only"
+expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 in place of 9: a reason"
+
+matrix --only PoCL
+((code == 1)) || fail "exit code $code where something is wrong"
+expect "| PoCL loops | toy | OpenCL 3.0, driver 1 | FAIL 1/1 |"
+expect "PoCL loops, numbers: FAIL add: bits differ"
+expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | FAIL |"
+expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
+expect "basic; right: same"
+
+matrix --only "no such implementation"
+((code == 1)) || fail "exit code $code where nothing ran"
+matrix --only GPU --checks defects --list
+((code == 0)) || fail "exit code $code of --list"
+expect "GPU: "
+echo "tools/portability: as expected"
