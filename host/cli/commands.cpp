@@ -13,6 +13,7 @@ namespace raya {
 namespace {
 
 constexpr int kExitBug = 1;
+constexpr int kExitCheckFailed = 4;
 
 int fail(const char* kind, const std::exception& error, int code) {
     fmt::print(stderr, "raya: {}{}\n", kind, error.what());
@@ -35,6 +36,7 @@ int run_program(int argc, char** argv) {
     add_generate_command(program);
     add_bench_command(program);
     add_study_command(program);
+    add_verify_command(program);
     try {
         program.parse(argc, argv);
         return kExitOk;

@@ -10,7 +10,8 @@ namespace raya {
 
 inline constexpr int kExitCheckFailed = 4;
 
-/// The command did its work, and what it was asked to check does not hold. What was found is printed already.
+/// Thrown by a command that has done its work, where what it was asked to check does not hold. What was found is
+/// printed already.
 struct CheckFailure {
     std::string summary{};  // printed on stderr unless empty
 };
@@ -24,5 +25,6 @@ void add_devices_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_study_command(CLI::App& program);
+void add_verify_command(CLI::App& program);
 
 }  // namespace raya

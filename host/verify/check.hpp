@@ -1,0 +1,55 @@
+// One thing that verify looks at, and what came of it.
+#pragma once
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace raya {
+
+enum class Outcome { kPass, kFail, kSkip };
+
+/// "PASS", "FAIL", "SKIP".
+const char* outcome_name(Outcome outcome);
+
+/// What is wrong, for somebody who has to find out why. What is not known is empty.
+struct Fault {
+    std::string where{};                  // the first operation, ray, word or pixel that is wrong
+    std::string expected{}, got{};        // of it: bits, and what they mean
+    std::string options{};                // build options of the kernel
+    std::vector<std::string> remedies{};  // what to try, the likeliest first
+};
+
+/// How a check ended, in a line: what was compared, why it is skipped, or what is wrong.
+struct Verdict {
+    Outcome outcome = Outcome::kPass;
+    std::string told;
+    Fault fault{};  // of kFail
+};
+
+inline Verdict passed(std::string told) { return {Outcome::kPass, std::move(told)}; }
+inline Verdict skipped(std::string reason) { return {Outcome::kSkip, std::move(reason)}; }
+inline Verdict failed(std::string told, Fault fault) { return {Outcome::kFail, std::move(told), std::move(fault)}; }
+
+struct Check {
+    std::string layer, name;  // "number", "e6m15, 16 lanes"
+    double seconds = 0;       // measured
+    Verdict verdict;
+};
+
+/// Runs `body` and measures it. What it throws is a check that failed with that message, not the end of the others:
+/// drivers refuse, and a machine whose arithmetic is wrong may lose packets, which the torus reports as a fault of
+/// ours.
+Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body);
+
+/// How many of `checks` ended so.
+std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
+
+/// "PASS  number    e6m15, 16 lanes  310 answers  0.41 s", and indented lines for a fault.
+std::string check_lines(const Check& check);
+
+/// An object with layer, name, status, seconds and told; of a failure also where, expected, got, build_options and
+/// remedies.
+nlohmann::ordered_json to_json(const Check& check);
+
+}  // namespace raya

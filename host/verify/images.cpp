@@ -1,0 +1,192 @@
+// Whole images, bit by bit: pictures that are known, rendered in ways that must not change them.
+#include <fmt/format.h>
+
+#include <bit>
+#include <optional>
+
+#include "ring/mapping.hpp"
+#include "torus/torus_renderer.hpp"
+#include "verify/pictures.hpp"
+#include "verify/verify.hpp"
+
+namespace raya {
+namespace {
+
+// What decides how a picture is made, and no bit of it.
+struct Rendering {
+    std::string picture;
+    bool quick = false;
+    std::uint32_t lanes = 0, group_size = 0;  // 0: the device's own
+    std::string mapping = "cyclic:8";         // of the ring
+    std::uint32_t pes = kPictureSide;
+    bool grid = false;
+    bool torus = false;
+    std::array<std::uint32_t, 3> nodes = {2, 2, 2};
+    Links links = Links::kTorus3d;
+    Injection inject = Injection::kAll;
+
+    std::string name() const {
+        std::string way = torus ? fmt::format("{} {}{}", links_name(links), sides_text(nodes),
+                                              inject == Injection::kRoot ? " root" : "")
+                                : fmt::format("{} on {}{}", mapping, pes, grid ? ", grid" : "");
+        if (lanes) way += fmt::format(", {}x{}", lanes, group_size);
+        return fmt::format("{}: {}", picture, way);
+    }
+};
+
+struct Rendered {
+    Image image;
+    std::string options;
+};
+
+Rendered render_on_ring(const Verification& v, Session& session, const Rendering& r) {
+    const Picture& picture = picture_named(r.picture);
+    RingSettings settings = plain_settings(picture);
+    settings.mapping = make_mapping(r.mapping, kPictureSide, kPictureSide, r.pes, 0, "cyclic");
+    settings.accel.grid = r.grid;
+    settings.kernels = v.kernels(r.lanes, r.group_size);
+    RingResult result = RingRenderer(session, scene_of(picture), settings).render();
+    return {std::move(result.image), result.build_options};
+}
+
+Rendered render_on_torus(const Verification& v, Session& session, const Rendering& r) {
+    const Picture& picture = picture_named(r.picture);
+    TorusSettings s;
+    s.machine = machine_named("torus");
+    s.width = s.height = kPictureSide;
+    s.torus = make_torus(r.nodes, r.links);
+    s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // unlike the nodes: some hold several, in turn
+    s.inject = r.inject;
+    s.bounces = kPictureBounces;
+    s.format = parse_format(picture.format);
+    s.sampling = picture.sampling;
+    s.kernels = v.kernels(r.lanes, r.group_size);
+    TorusResult result = TorusRenderer(session, scene_of(picture), s).render();
+    return {std::move(result.image), result.build_options};
+}
+
+std::string colour_text(const std::array<std::uint32_t, 3>& bits) {
+    const auto value = [&](std::size_t k) { return std::bit_cast<float>(bits[k]); };
+    return fmt::format("0x{:08x} 0x{:08x} 0x{:08x} = ({:.9g}, {:.9g}, {:.9g})", bits[0], bits[1], bits[2], value(0),
+                       value(1), value(2));
+}
+
+std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
+    std::array<std::uint32_t, 3> bits{};
+    for (std::size_t k = 0; k < 3; ++k) bits[k] = std::bit_cast<std::uint32_t>(image.rgb[3 * pixel + k]);
+    return bits;
+}
+
+// The picture made plainly on the same device, without the compiler's optimiser; nothing where that is refused.
+std::optional<Image> plain_image(const Verification& v, Session& session, const Picture& picture) {
+    RingSettings settings = plain_settings(picture);
+    const KernelChoice broken = v.kernels(1, 1);
+    settings.kernels.kernel_dir = broken.kernel_dir;
+    settings.kernels.more_options = broken.more_options;
+    settings.kernels.more_options.emplace_back("-cl-opt-disable");
+    try {
+        return RingRenderer(session, scene_of(picture), settings).render().image;
+    } catch (const std::exception&) {
+        return {};
+    }
+}
+
+// What to try, by what the plainest way of all gives on this device.
+std::vector<std::string> remedies(const Verification& v, Session& session, const Picture& picture) {
+    const std::optional<Image> plain = plain_image(v, session, picture);
+    if (plain && pixel_hash(*plain) == known_picture(picture).hash)
+        return {
+            "with one lane, groups of one and -cl-opt-disable this device makes the right image:\n"
+            "render with --lanes 1 --group 1, and tell the driver's makers",
+            "a newer driver"};
+    return {"are checks of \"number\" or \"geometry\" wrong too? then those first",
+            "made plainly (one lane, -cl-opt-disable) the image is wrong as well: another driver, or another OpenCL\n"
+            "implementation for this device (raya devices)"};
+}
+
+Verdict check_rendering(const Verification& v, Session& session, const Rendering& r) {
+    if (r.group_size > v.device().max_group_size)
+        return skipped(
+            fmt::format("{} work-items wanted, the device has {} in a group", r.group_size, v.device().max_group_size));
+    const Picture& picture = picture_named(r.picture);
+    const KnownPicture& known = known_picture(picture);
+    const Rendered got = r.torus ? render_on_torus(v, session, r) : render_on_ring(v, session, r);
+    if (pixel_hash(got.image) == known.hash) return passed(known.hash.substr(0, 8));
+    std::size_t wrong = 0, first = 0;
+    const std::size_t pixels = known.image.rgb.size() / 3;
+    for (std::size_t i = pixels; i-- > 0;) {
+        if (pixel_bits(got.image, i) == pixel_bits(known.image, i)) continue;
+        ++wrong;
+        first = i;
+    }
+    return failed(
+        fmt::format("{} of {} pixels wrong", wrong, pixels),
+        {.where = fmt::format("row {}, column {} (red, green, blue)", first / kPictureSide, first % kPictureSide),
+         .expected = colour_text(pixel_bits(known.image, first)),
+         .got = colour_text(pixel_bits(got.image, first)),
+         .options = got.options,
+         .remedies = remedies(v, session, picture)});
+}
+
+// Every kernel and every option at least once; renderings of equal build options follow each other, as they share a
+// build.
+std::vector<Rendering> usual_renderings() {
+    constexpr auto k2d = Links::kTorus2d;
+    constexpr auto kRoot = Injection::kRoot;
+    return {
+        {.picture = "glass fp32", .quick = true},
+        {.picture = "glass fp32 filter", .quick = true, .mapping = "cyclic:5", .pes = 10},
+        {.picture = "glass fp32 axes", .quick = true, .mapping = "rows", .pes = 16},
+        {.picture = "glass fp32 diagonals", .quick = true, .mapping = "grid:4x4", .pes = 16},
+        {.picture = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
+        {.picture = "glass fp32", .quick = true, .lanes = 4, .group_size = 32, .mapping = "random", .pes = 5},
+        {.picture = "polygons fp32", .quick = true, .mapping = "tiles:5x4", .pes = 7},
+        {.picture = "polygons fp32", .quick = true, .grid = true},
+        {.picture = "polygons fp32", .quick = true, .torus = true},
+        {.picture = "polygons fp32", .quick = true, .torus = true, .nodes = {3, 2, 2}, .links = k2d, .inject = kRoot},
+        {.picture = "cones fp32", .quick = true, .mapping = "blocks", .pes = 5},
+        {.picture = "mirrors spa22", .quick = true, .mapping = "column", .pes = kPictureSide},
+        {.picture = "mirrors spa22 filter", .quick = true, .mapping = "cyclic:16", .pes = kPictureSide},
+        {.picture = "cones e5m10", .quick = true},
+        {.picture = "mirrors spa22 axes", .mapping = "cyclic:3", .pes = 100},
+        {.picture = "planes fp32 corners", .grid = true},
+        {.picture = "spheres e8m12t"},
+        {.picture = "glass e8m21"},
+        {.picture = "mirrors spa22", .torus = true, .links = k2d},
+        {.picture = "polygons spa22", .grid = true},
+        {.picture = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
+        {.picture = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
+}
+
+// Every width of lanes with groups of one and of 32 work-items, on both machines, in both usual formats.
+std::vector<Rendering> all_builds() {
+    std::vector<Rendering> all;
+    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
+        for (const std::uint32_t group : {1u, 32u}) {
+            for (const char* picture :
+                 {"glass fp32", "polygons fp32", "mirrors spa22", "cones e5m10", "spheres e8m12t"})
+                all.push_back({.picture = picture, .lanes = lanes, .group_size = group});
+            for (const char* picture : {"polygons fp32", "polygons spa22"}) {
+                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .grid = true});
+                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .torus = true});
+            }
+            all.push_back({.picture = "glass fp32 filter", .lanes = lanes, .group_size = group});
+            all.push_back({.picture = "mirrors spa22 axes", .lanes = lanes, .group_size = group});
+        }
+    return all;
+}
+
+}  // namespace
+
+void verify_images(Verification& v) {
+    std::vector<Rendering> renderings = usual_renderings();
+    if (v.full()) {
+        const std::vector<Rendering> more = all_builds();
+        renderings.insert(renderings.end(), more.begin(), more.end());
+    }
+    for (const Rendering& r : renderings)
+        if (v.full() || r.quick)
+            v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
+}
+
+}  // namespace raya

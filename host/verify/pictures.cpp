@@ -1,0 +1,145 @@
+#include "verify/pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <sstream>
+#include <stdexcept>
+
+#include "embedded.hpp"
+#include "ring/mapping.hpp"
+#include "scene/nff_reader.hpp"
+#include "verify/words.hpp"
+
+namespace raya {
+namespace {
+
+constexpr const char* kHeading =
+    "# Hashes and pixels of pictures, made by tests/verify/make_pictures.cpp: do not edit.\n"
+    "# \"NAME: HASH\"; then a line a row: bits of RED/GREEN/BLUE, hexadecimal digits of fp32 numbers without the "
+    "zeros "
+    "at their\n"
+    "# ends; .: the same as on the left, =: as in the picture before.\n";
+
+// The numbers of "3f8/3f8/0"; std::logic_error where it is not so.
+std::vector<float> colour_of(const std::string& text) {
+    std::vector<float> rgb;
+    std::istringstream in(text);
+    for (std::string digits; std::getline(in, digits, '/');) rgb.push_back(std::bit_cast<float>(word_of(digits)));
+    if (rgb.size() != 3) throw std::logic_error("known pictures: '" + text + "' is no colour");
+    return rgb;
+}
+
+std::string colour_text(const float* rgb) {
+    const auto digits = [&](std::size_t k) { return digits_of(std::bit_cast<std::uint32_t>(rgb[k])); };
+    return digits(0) + '/' + digits(1) + '/' + digits(2);
+}
+
+void read_row(const std::string& line, const Image& before, Image& image) {
+    std::istringstream in(line);
+    for (std::string pixel; in >> pixel;) {
+        const std::size_t at = image.rgb.size();
+        std::vector<float> rgb;
+        if (pixel == "." && at >= 3)
+            rgb.assign(image.rgb.end() - 3, image.rgb.end());
+        else if (pixel == "=" && at + 3 <= before.rgb.size())
+            rgb = {before.rgb[at], before.rgb[at + 1], before.rgb[at + 2]};
+        else
+            rgb = colour_of(pixel);
+        image.rgb.insert(image.rgb.end(), rgb.begin(), rgb.end());
+    }
+    image.height += 1;
+    image.width = static_cast<int>(image.rgb.size() / 3) / image.height;
+}
+
+}  // namespace
+
+const std::vector<Picture>& pictures() {
+    constexpr auto kFilter = AntialiasMethod::kFilter, kSupersample = AntialiasMethod::kSupersample;
+    static const std::vector<Picture> all = {
+        {"glass fp32", "glass", "fp32"},
+        {"glass fp32 axes", "glass", "fp32", kSupersample},
+        {"glass fp32 diagonals", "glass", "fp32", kSupersample, RAYA_POINTS_DIAGONALS},
+        {"glass fp32 filter", "glass", "fp32", kFilter},
+        {"polygons fp32", "polygons", "fp32"},
+        {"cones fp32", "cones", "fp32"},
+        {"planes fp32 corners", "planes", "fp32", AntialiasMethod::kNone, RAYA_POINTS_AXES, Sampling::kCorners},
+        {"mirrors spa22", "mirrors", "spa22"},
+        {"mirrors spa22 axes", "mirrors", "spa22", kSupersample},
+        {"mirrors spa22 filter", "mirrors", "spa22", kFilter},
+        {"polygons spa22", "polygons", "spa22"},
+        {"cones e5m10", "cones", "e5m10"},
+        {"spheres e8m12t", "spheres", "e8m12t"},
+        {"glass e8m21", "glass", "e8m21"}};
+    return all;
+}
+
+const Picture& picture_named(const std::string& name) {
+    for (const Picture& picture : pictures())
+        if (picture.name == name) return picture;
+    throw std::logic_error("no picture '" + name + "'");
+}
+
+Scene scene_of(const Picture& picture) {
+    const std::string file = "scenes/" + picture.scene + ".nff";
+    return parse_nff(embedded_files().at(file), file);
+}
+
+RingSettings plain_settings(const Picture& picture) {
+    RingSettings settings;
+    settings.machine = machine_named("grande");
+    settings.mapping = make_mapping("cyclic", kPictureSide, kPictureSide, 1, 0, "cyclic");
+    settings.bounces = kPictureBounces;
+    settings.format = parse_format(picture.format);
+    settings.sampling = picture.sampling;
+    settings.antialias.method = picture.antialias;
+    settings.antialias.points = picture.points;
+    settings.kernels = {.lanes = 1, .group_size = 1, .filter = false, .kernel_dir = {}, .more_options = {}};
+    return settings;
+}
+
+std::vector<KnownPicture> parse_pictures(const std::string& text) {
+    std::vector<KnownPicture> all;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty() || line[0] == '#') continue;
+        const std::size_t colon = line.find(": ");
+        if (colon != std::string::npos)
+            all.push_back({line.substr(0, colon), line.substr(colon + 2), {}});
+        else if (!all.empty())
+            read_row(line, all.size() > 1 ? all[all.size() - 2].image : Image{}, all.back().image);
+        else
+            throw std::logic_error("known pictures: a row before the first picture");
+    }
+    for (const KnownPicture& picture : all)
+        if (pixel_hash(picture.image) != picture.hash)
+            throw std::logic_error("known pictures: '" + picture.name + "' has another hash");
+    return all;
+}
+
+std::string pictures_text(const std::vector<KnownPicture>& all) {
+    std::string text = kHeading;
+    std::vector<std::string> before(kPictureSide * kPictureSide);
+    for (const KnownPicture& picture : all) {
+        text += fmt::format("{}: {}\n", picture.name, picture.hash);
+        std::string left;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            const std::string own = colour_text(&picture.image.rgb.at(3 * i));
+            const bool first = i % kPictureSide == 0, last = (i + 1) % kPictureSide == 0;
+            text += (own == left && !first ? "." : own == before[i] ? "=" : own) + (last ? "\n" : " ");
+            left = before[i] = own;
+        }
+    }
+    return text;
+}
+
+const KnownPicture& known_picture(const Picture& picture) {
+    static const std::vector<KnownPicture> all = parse_pictures(embedded_files().at("host/verify/pictures.txt"));
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const KnownPicture& known) { return known.name == picture.name; });
+    if (found == all.end()) throw std::logic_error("known pictures: no '" + picture.name + "'");
+    return *found;
+}
+
+}  // namespace raya

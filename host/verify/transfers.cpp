@@ -1,0 +1,182 @@
+// Words on their way: bus, ring and links, and the copies that they are made of, each against a model on the host.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <optional>
+
+#include "ring/bus.hpp"
+#include "ring/ring.hpp"
+#include "torus/link_exchange.hpp"
+#include "torus/topology.hpp"
+#include "verify/verify.hpp"
+
+namespace raya {
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+// Every word another one, so that none can stand in for another; as fp32 numbers they are normal and no NaN.
+Words numbered(std::size_t count, std::uint32_t first = 0) {
+    Words words(count);
+    std::iota(words.begin(), words.end(), 0x3f000000u + first);
+    return words;
+}
+std::vector<float> as_floats(const Words& words) {
+    std::vector<float> floats;
+    for (const std::uint32_t word : words) floats.push_back(std::bit_cast<float>(word));
+    return floats;
+}
+Words as_words(const std::vector<float>& floats) {
+    Words words;
+    for (const float number : floats) words.push_back(std::bit_cast<std::uint32_t>(number));
+    return words;
+}
+
+std::vector<std::string> remedies() {
+    return {
+        "a newer driver: copies between buffers on the device are wrong, or not in the order in which they were given",
+        "another OpenCL implementation for this device (raya devices)"};
+}
+
+std::optional<Verdict> difference(const Words& expected, const Words& got, const std::string& what,
+                                  std::size_t words_of_one, const char* one) {
+    const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
+    if (differ.first == expected.end()) return {};
+    const auto at = static_cast<std::size_t>(differ.first - expected.begin());
+    return failed(what + ": words are not where they should be",
+                  {.where = fmt::format("{}, {} {}, word {}", what, one, at / words_of_one, at % words_of_one),
+                   .expected = fmt::format("0x{:08x}", expected[at]),
+                   .got = fmt::format("0x{:08x}", got[at]),
+                   .remedies = remedies()});
+}
+
+Verdict check_bus(Session& session) {
+    Communication counted;
+    Bus bus(session, counted);
+    const Words words = numbered(100'003);
+    auto everywhere = session.buffer<std::uint32_t>("broadcast words", words.size());
+    bus.broadcast(everywhere, words);
+    Words got(words.size());
+    session.read("read back", everywhere, got);
+    if (auto verdict = difference(words, got, "broadcast", words.size(), "broadcast")) return *verdict;
+    auto blocks = session.buffer<float>("pixel blocks", words.size());
+    session.write("blocks", blocks, as_floats(words));
+    std::vector<float> gathered(words.size());
+    bus.gather(blocks, gathered, words.size());
+    if (auto verdict = difference(words, as_words(gathered), "gather", words.size(), "gather")) return *verdict;
+    return passed(fmt::format("{} words each way", words.size()));
+}
+
+// Blocks of all PEs after some turns: PE i has what PE (i + turned) mod P had.
+Verdict check_ring(Session& session, std::size_t pes, std::size_t words, bool skips_one) {
+    Communication counted;
+    Ring ring(session, counted, pes, words);
+    const Words own = numbered(pes * words);
+    auto memory = session.buffer<float>("own words", own.size());
+    session.write("own words", memory, as_floats(own));
+    ring.load(memory, words, 0);
+    std::size_t turned = 0;
+    for (int i = 0; i < 12; ++i) {
+        const Turn turn = i % 4 == 3 ? Turn::kUp : Turn::kDown;
+        turned = (turned + (turn == Turn::kDown ? 1 : pes - 1)) % pes;
+        if (!(skips_one && i == 5)) ring.rotate(turn);
+        Words expected(own.size());
+        for (std::size_t w = 0; w < own.size(); ++w) expected[w] = own[(w / words + turned) % pes * words + w % words];
+        std::vector<float> got(own.size());
+        session.read("ring blocks", ring.blocks(), got);
+        const std::string what = fmt::format("rotation {} of {} PEs", i + 1, pes);
+        if (auto verdict = difference(expected, as_words(got), what, words, "PE")) return *verdict;
+    }
+    return passed(fmt::format("12 rotations of {} blocks of {} words", pes, words));
+}
+
+// Some nodes' outboxes filled, one exchange, all inboxes compared. `every`: a box in so many has packets; with many the
+// links are copied by whole sides of the torus, with few one by one.
+Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, bool skips_one) {
+    constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS;
+    const std::uint32_t nodes = raya_nodes(torus), box = (1 + kCapacity) * kWords;
+    LinkExchange links(session, torus, kCapacity, {"verify", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
+    links.clear();
+    NodeStatus status(nodes);
+    Words out(links.outboxes().size()), in(out.size()), expected(out.size());
+    std::uint32_t packets_sent = 0;
+    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+        for (std::uint32_t node = 0; node < nodes && torus.sides[link / 2] > 1; ++node) {
+            const std::uint32_t number = link * nodes + node;
+            const std::uint32_t packets = number % every ? 0 : 1 + number % kCapacity;
+            status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
+            const std::size_t from = std::size_t{number} * box;
+            const std::size_t to = (std::size_t{link} * nodes + raya_link_end(torus, node, link)) * box;
+            out[from] = expected[to] = packets;
+            for (std::uint32_t w = 0; w < packets * kWords; ++w)
+                out[from + kWords + w] = expected[to + kWords + w] = number << 12 | (w + 1);
+            packets_sent += packets;
+        }
+    session.write("outboxes", links.outboxes(), out);
+    std::vector<std::uint64_t> words(std::size_t{nodes} * RAYA_LINKS);
+    if (!skips_one) links.exchange(status, words);
+    session.read("inboxes", links.inboxes(), in);
+    // What lies behind a box's packets has no meaning.
+    for (std::size_t at = 0; at < in.size(); at += box)
+        for (std::size_t w = 1; w < box; ++w)
+            if (w < kWords || w >= (1 + expected[at]) * kWords) in[at + w] = expected[at + w] = 0;
+    const std::string what =
+        fmt::format("exchange on {}", sides_text({torus.sides[0], torus.sides[1], torus.sides[2]}));
+    if (auto verdict = difference(expected, in, what, box, "inbox")) return *verdict;
+    return passed(fmt::format("{} packets over {} links", packets_sent, RAYA_LINKS * nodes));
+}
+
+// Blocks of blocks from one pitch to another; all other words stay as they were.
+Verdict check_copies(Session& session, bool skips_one) {
+    struct Shape {
+        Session::Blocks from, to;
+        std::size_t count, blocks, slabs;
+    };
+    const Shape shapes[] = {{{3, 17, 0, 0}, {0, 5, 0, 2}, 5, 40, 1},
+                            {{0, 8, 0, 1}, {4, 31, 0, 0}, 8, 33, 1},
+                            {{2, 9, 99, 5}, {1, 7, 84, 3}, 4, 10, 6},
+                            {{0, 64, 1024, 0}, {0, 64, 1024, 64}, 64, 15, 3}};
+    constexpr std::size_t kWords = 4096;
+    const Words source = numbered(kWords);
+    std::size_t copied = 0;
+    for (const Shape& s : shapes) {
+        auto from = session.buffer<std::uint32_t>("from", kWords), to = session.buffer<std::uint32_t>("to", kWords);
+        session.write("from", from, source);
+        session.fill("to", to, 0xdeadbeefu);
+        if (!skips_one) session.copy_blocks("blocks", from, s.from, to, s.to, s.count, s.blocks, s.slabs);
+        Words expected(kWords, 0xdeadbeefu), got(kWords);
+        const auto at = [&](const Session::Blocks& b, std::size_t slab, std::size_t block, std::size_t w) {
+            return b.first + slab * b.slab_pitch + block * b.pitch + b.offset + w;
+        };
+        for (std::size_t slab = 0; slab < s.slabs; ++slab)
+            for (std::size_t block = 0; block < s.blocks; ++block)
+                for (std::size_t w = 0; w < s.count; ++w, ++copied)
+                    expected[at(s.to, slab, block, w)] = source[at(s.from, slab, block, w)];
+        session.read("to", to, got);
+        const std::string what = fmt::format("{} slabs of {} blocks of {} words", s.slabs, s.blocks, s.count);
+        if (auto verdict = difference(expected, got, what, kWords, "buffer")) return *verdict;
+    }
+    return passed(fmt::format("{} words in {} shapes", copied, std::size(shapes)));
+}
+
+}  // namespace
+
+void verify_transfers(Verification& v) {
+    v.check("machine", "copies of blocks", [&](Session& s) { return check_copies(s, v.breakage().skips_copy); });
+    v.check("machine", "bus: broadcast and gather", [](Session& s) { return check_bus(s); });
+    using Sizes = std::pair<std::size_t, std::size_t>;
+    for (const auto& [pes, words] : {Sizes{2, 1}, {7, 100}, {256, 768}})
+        v.check("machine", fmt::format("ring: rotations of {} PEs", pes),
+                [&, p = pes, w = words](Session& s) { return check_ring(s, p, w, v.breakage().skips_rotation); });
+    for (const Links links : {Links::kTorus3d, Links::kTorus2d})
+        for (const std::uint32_t every : {1u, 50u})
+            v.check("machine",
+                    fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "whole sides" : "single boxes"),
+                    [&](Session& s) {
+                        return check_links(s, make_torus({3, 2, 4}, links), every, v.breakage().skips_exchange);
+                    });
+}
+
+}  // namespace raya

@@ -1,0 +1,71 @@
+// Is this device, with its driver and its compiler, right? Known answers from the number layer up to whole images.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cl/commands.hpp"
+#include "cl/device.hpp"
+#include "kernels/kernel_options.hpp"
+#include "verify/breakage.hpp"
+#include "verify/check.hpp"
+
+namespace raya {
+
+enum class Depth {
+    kQuick,  // one width of lanes, the usual formats, a dozen images: seconds
+    kFull    // every format, lanes and group size: minutes
+};
+
+struct VerifySettings {
+    Depth depth = Depth::kQuick;
+    Breakage breakage{};
+    std::filesystem::path kernel_dir{};  // kernels from disk in place of the program's own
+    std::string only{};                  // checks with this in "LAYER NAME" alone; empty: all
+};
+
+using CheckSink = std::function<void(const Check&)>;
+
+/// Checks `device` from the number layer to the images, layer by layer, so that the first failure is nearest to the
+/// fault. `finished` is told of every check as it ends. DeviceError if the device says nothing of itself.
+std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished = {});
+
+/// What the layers' checks have in common: the device, the depth, and how a check is run.
+class Verification {
+  public:
+    Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished);
+
+    const DeviceInfo& device() const { return info_; }
+    const Breakage& breakage() const { return settings_.breakage; }
+    bool full() const { return settings_.depth == Depth::kFull; }
+
+    /// Runs one check in a session of its own: a failed command may leave a context of no use.
+    void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
+
+    /// A program of kernels/, built with the fault that is to be seen.
+    Program build(Session& session, const std::string& file, std::vector<std::string> options) const;
+    /// The same for a renderer's kernels.
+    KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
+
+    /// Lanes that --full tries; else the device's own.
+    std::vector<std::uint32_t> lanes() const;
+
+    std::vector<Check> take_checks() { return std::move(checks_); }
+
+  private:
+    cl::Device device_;
+    DeviceInfo info_;
+    VerifySettings settings_;
+    CheckSink finished_;
+    std::vector<Check> checks_;
+};
+
+// The layers, in the order in which they rest on each other.
+void verify_numbers(Verification& verification);
+void verify_geometry(Verification& verification);
+void verify_machines(Verification& verification);   // arithmetic, local memory
+void verify_transfers(Verification& verification);  // bus, ring, links: a part of verify_machines()
+void verify_images(Verification& verification);
+
+}  // namespace raya

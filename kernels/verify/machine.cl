@@ -1,0 +1,78 @@
+// What kernels compute of the machines beside numbers: owners of pixels, ways through the torus, words in local memory. The host computes the
+// same with the same headers; all of it is exact.
+#include "shared/mapping.h"
+#include "shared/neighbours.h"
+#include "shared/torus.h"
+
+#ifndef RAYA_GROUP
+#define RAYA_GROUP 1  // L: work-items in a work-group of `turn_round`, 1..64
+#endif
+
+// Who owns a pixel and where it lies in its owner's share, both ways. A work-item takes one pixel.
+__kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]
+                          __global const raya_pixel* restrict pixels,      // [case]
+                          const uint cases,
+                          __global uint* restrict results)                 // [case][6]: owner, size of its share, number of the pixel in it, the
+                                                                           // pixel of that number (row, column), neighbours (a bit for each side)
+{
+    const uint i = get_global_id(0);
+    if (i >= cases) return;
+    const raya_mapping m = mappings[i];
+    const raya_pixel pixel = pixels[i];
+    __global uint* to = results + i * 6;
+    const uint owner = raya_owner(m, pixel.row, pixel.column);
+    const raya_share share = raya_share_of(m, owner);
+    const uint number = raya_index_of(m, share, pixel);
+    const raya_pixel back = raya_pixel_of(m, share, number);
+    uint sides = 0;
+    for (uint side = 0; side < RAYA_SIDES; ++side) sides |= (uint)(raya_has_neighbour(m, pixel, side) != 0) << side;
+    to[0] = owner;
+    to[1] = raya_share_size(share);
+    to[2] = number;
+    to[3] = back.row;
+    to[4] = back.column;
+    to[5] = sides;
+}
+
+// The first link of a packet's way and of a return's, and where the links of its node lead. A work-item takes one pair of nodes.
+__kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
+                        __global const uint* restrict nodes,          // [case][2]: where the packet is, where it goes
+                        const uint cases,
+                        __global uint* restrict results)              // [case][2 + RAYA_LINKS]
+{
+    const uint i = get_global_id(0);
+    if (i >= cases) return;
+    const raya_torus t = toruses[i];
+    const uint node = nodes[2 * i];
+    __global uint* to = results + i * (2 + RAYA_LINKS);
+    to[0] = raya_next_link(t, node, nodes[2 * i + 1]);
+    to[1] = raya_home_link(t, node);
+    for (uint link = 0; link < RAYA_LINKS; ++link) to[2 + link] = raya_link_end(t, node, link);
+}
+
+// Every work-group takes its words into local memory, then takes them out again the other way round, several times, with a number that its
+// work-items have drawn from a counter: what the trace kernel asks of local memory, barriers and atomics.
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void turn_round(__global const uint* restrict from,  // [group][words]
+                const uint words,
+                const uint times,
+                __local uint* restrict own,          // [2][words]
+                __local uint* restrict next,         // [1]
+                __global uint* restrict to,          // [group][words]
+                __global uint* restrict drawn)       // [group][words]: how often each number was drawn
+{
+    const uint group = get_group_id(0);
+    if (get_local_id(0) == 0) *next = 0;
+    for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) own[w] = from[group * words + w];
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint i = 0; i < times; ++i) {
+        __local const uint* source = own + i % 2 * words;
+        __local uint* target = own + (i + 1) % 2 * words;
+        for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) target[w] = source[words - 1 - w] + 1;
+#ifndef RAYA_BREAK_BARRIER
+        barrier(CLK_LOCAL_MEM_FENCE);
+#endif
+    }
+    for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) to[group * words + w] = own[times % 2 * words + w];
+    for (uint n = atomic_inc(next); n < words; n = atomic_inc(next)) drawn[group * words + n] += 1;
+}

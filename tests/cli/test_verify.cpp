@@ -1,0 +1,65 @@
+// raya verify, as a user sees it.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+#include "report/scratch_folder.hpp"
+
+namespace raya {
+
+TEST_CASE("verify prints a line for each check and closes with the counts", "[cli][verify]") {
+    const Outcome run = run_raya({"verify", "--only", "machine"});
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK_THAT(run.out, Catch::Contains("PASS  machine   ring: rotations of 7 PEs"));
+    CHECK_THAT(run.out, Catch::Matches("(.|\n)*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s\n"));
+}
+
+TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string file = (scratch / "report.json").string();
+    const Outcome run = run_raya({"verify", "--only", "machine", "--break", "rotation", "--report", file});
+    INFO(run.told());
+    CHECK(run.code == 4);
+    CHECK_THAT(run.out, Catch::Contains("FAIL  machine   ring: rotations of 7 PEs") && Catch::Contains("expected") &&
+                            Catch::Contains("try"));
+    CHECK_THAT(run.out, Catch::Contains("3 failed"));
+    const auto report = nlohmann::json::parse(file_contents(file));
+    CHECK(report["depth"] == "quick");
+    const auto& device = report["devices"][0];
+    CHECK(device["right"] == false);
+    CHECK(device["failed"] == 3);
+    CHECK(device["passed"].get<int>() + 3 + device["skipped"].get<int>() == int(device["checks"].size()));
+    int failures = 0;
+    for (const auto& check : device["checks"]) {
+        for (const char* key : {"layer", "name", "status", "seconds", "told"}) CHECK(check.contains(key));
+        if (check["status"] != "FAIL") continue;
+        ++failures;
+        for (const char* key : {"where", "expected", "got"}) CHECK(check[key] != "");
+    }
+    CHECK(failures == 3);
+}
+
+TEST_CASE("verify of nothing is no success", "[cli][verify]") {
+    const Outcome run = run_raya({"verify", "--only", "no such check"});
+    INFO(run.told());
+    CHECK(run.code == 4);
+    CHECK_THAT(run.out, Catch::Contains(": 0 checks passed, 0 failed, 0 skipped"));
+}
+
+TEST_CASE("verify takes every usable device in turn", "[cli][verify]") {
+    const Outcome run = run_raya({"verify", "--device", "all", "--only", "rotations"});
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK_THAT(run.out, Catch::Contains("3 checks passed"));
+}
+
+TEST_CASE("verify refuses what makes no sense", "[cli][verify]") {
+    CHECK(run_raya({"verify", "--quick", "--full"}).code == 2);
+    CHECK(run_raya({"verify", "--break", "everything"}).code == 2);
+    CHECK(run_raya({"verify", "--report", "/no/such/folder/report.json"}).code == 2);
+    CHECK(run_raya({"verify", "--device", "no such device"}).code == 3);
+    CHECK_FALSE(contains(run_raya({"verify", "--help"}).out, "--break"));
+}
+
+}  // namespace raya

@@ -1,0 +1,127 @@
+// The exact value of an operation, and what is remarkable about rounding it: features, by which the known answers are
+// chosen.
+#pragma once
+#include <mpfr.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "machine/number_format.hpp"
+#include "number/mpfr_oracle.hpp"
+
+namespace raya {
+
+/// An MPFR number of so many bits.
+class Mpfr {
+  public:
+    explicit Mpfr(mpfr_prec_t bits) { mpfr_init2(value_, bits); }
+    Mpfr(const Mpfr&) = delete;
+    Mpfr& operator=(const Mpfr&) = delete;
+    ~Mpfr() { mpfr_clear(value_); }
+    operator mpfr_ptr() { return value_; }  // NOLINT: MPFR's functions take it as it is
+
+  private:
+    mpfr_t value_;
+};
+
+/// Bits in which sums and products of fp32 numbers, a b + c too, are exact; quotients and roots keep their first ones.
+inline constexpr mpfr_prec_t kExactBits = 700;
+
+/// fp32 by IEEE 754 from MPFR, with its infinities, NaNs and denormals.
+class IeeeOracle {
+  public:
+    float add(float a, float b) {
+        return rounded([&](mpfr_ptr z) { return mpfr_add(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+    }
+    float sub(float a, float b) {
+        return rounded([&](mpfr_ptr z) { return mpfr_sub(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+    }
+    float mul(float a, float b) {
+        return rounded([&](mpfr_ptr z) { return mpfr_mul(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+    }
+    float div(float a, float b) {
+        return rounded([&](mpfr_ptr z) { return mpfr_div(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+    }
+    float sqrt(float a) {
+        return rounded([&](mpfr_ptr z) { return mpfr_sqrt(z, take(a_, a), MPFR_RNDN); });
+    }
+    float mad(float a, float b, float c) {
+        return rounded([&](mpfr_ptr z) { return mpfr_fma(z, take(a_, a), take(b_, b), take(c_, c), MPFR_RNDN); });
+    }
+    float round(double value) { return static_cast<float>(value); }
+
+  private:
+    static mpfr_ptr take(Mpfr& to, float value) {
+        mpfr_set_flt(to, value, MPFR_RNDN);
+        return to;
+    }
+    template <class Operation>
+    float rounded(const Operation& operation) {
+        const mpfr_exp_t lowest = mpfr_get_emin(), highest = mpfr_get_emax();
+        int inexact = operation(z_);
+        mpfr_set_emin(-148);  // as MPFR's manual has it for binary32
+        mpfr_set_emax(128);
+        inexact = mpfr_check_range(z_, inexact, MPFR_RNDN);
+        mpfr_subnormalize(z_, inexact, MPFR_RNDN);
+        mpfr_set_emin(lowest);
+        mpfr_set_emax(highest);
+        return mpfr_get_flt(z_, MPFR_RNDN);
+    }
+
+    Mpfr a_{24}, b_{24}, c_{24}, z_{24};
+};
+
+/// The feature of results that are wrong where they are rounded to fp32 first and then to the format.
+inline constexpr const char* kTwice = "rounded twice is wrong";
+
+/// What is remarkable about rounding `exact` to `expected`: where it lies between the numbers of the format, and
+/// whether it leaves the format's range. `bits`: significant ones of the format.
+inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const NumberFormat& format) {
+    const int bits = format.fraction_bits + 1;
+    std::set<std::string> all;
+    const auto note = [&](const std::string& what) { all.insert(what + (std::signbit(expected) ? " -" : " +")); };
+    if (!mpfr_number_p(exact) || mpfr_zero_p(exact)) {
+        note(std::isnan(expected) ? "nan" : std::isinf(expected) ? "infinite" : "zero");
+        return all;
+    }
+    if (expected == 0) {
+        note("flushed");
+        return all;
+    }
+    Mpfr near(bits), finer(bits + 1), twice(24), again(bits), fine(bits + 12), away(bits + 12), tie(bits + 1);
+    mpfr_set(near, exact, MPFR_RNDZ);
+    mpfr_set(finer, exact, MPFR_RNDZ);
+    const bool half = mpfr_cmp(near, finer) != 0;
+    mpfr_set(tie, near, MPFR_RNDZ);
+    if (mpfr_cmp_ui(near, 0) > 0)
+        mpfr_nextabove(tie);
+    else
+        mpfr_nextbelow(tie);
+    mpfr_set(fine, exact, MPFR_RNDZ);
+    mpfr_set(away, exact, MPFR_RNDA);
+    const bool up = mpfr_cmpabs(near, (mpfr_set_flt(twice, expected, MPFR_RNDN), twice)) < 0;
+    if (mpfr_cmp(exact, near) == 0)
+        note("exact");
+    else if (half && mpfr_cmp(exact, finer) == 0)
+        note(up ? "tie up" : "tie down");
+    else if (mpfr_cmp(fine, tie) == 0)
+        note("just above a tie");
+    else if (mpfr_cmp(away, tie) == 0)
+        note("just below a tie");
+    else if (mpfr_cmp(fine, near) == 0)
+        note("just above a number");
+    else
+        note(half ? "upper half" : "lower half");
+    // Rounded to fp32 first and then to the format, the result would be another one.
+    mpfr_set(twice, exact, MPFR_RNDN);
+    mpfr_set(again, twice, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
+    if (bits < 24 && mpfr_get_flt(again, MPFR_RNDN) != expected) all.insert(kTwice);
+    int exponent = 0;
+    if (up && std::frexp(std::abs(expected), &exponent) == 0.5F) note("carries into the next binade");
+    return all;
+}
+
+}  // namespace raya

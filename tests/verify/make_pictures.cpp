@@ -1,0 +1,9 @@
+// Prints the known pictures: build/tests/make_pictures > host/verify/pictures.txt
+#include "verify/make_pictures.hpp"
+
+#include <cstdio>
+
+int main() {
+    const std::string text = raya::make_pictures();
+    return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() ? 0 : 1;
+}

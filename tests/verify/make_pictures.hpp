@@ -1,0 +1,26 @@
+// Makes the known pictures: each as plainly as it can be made, on the default device.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ring/ring_renderer.hpp"
+#include "verify/pictures.hpp"
+
+namespace raya {
+
+inline Image plain_picture(const Picture& picture) {
+    Session session(choose_device(""));
+    return RingRenderer(session, scene_of(picture), plain_settings(picture)).render().image;
+}
+
+/// The text of host/verify/pictures.txt.
+inline std::string make_pictures() {
+    std::vector<KnownPicture> all;
+    for (const Picture& picture : pictures()) {
+        const Image image = plain_picture(picture);
+        all.push_back({picture.name, pixel_hash(image), image});
+    }
+    return pictures_text(all);
+}
+
+}  // namespace raya

@@ -1,0 +1,125 @@
+// verify fails when it must: each fault, put in on purpose, is seen by the checks that it concerns and by no others.
+#include <catch2/catch.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "verify/verify.hpp"
+
+namespace raya {
+namespace {
+
+using Names = std::set<std::string>;
+
+std::vector<Check> run(const std::string& breakage, const std::string& only) {
+    return verify(choose_device(""), {.breakage = breakage_named(breakage), .only = only});
+}
+
+// Names of those that failed.
+Names failures(const std::vector<Check>& checks) {
+    Names names;
+    for (const Check& check : checks)
+        if (check.verdict.outcome == Outcome::kFail) names.insert(check.name);
+    return names;
+}
+
+// Of every check's name what stands before its first comma, of those that ended so.
+Names beginnings(const std::vector<Check>& checks, Outcome outcome) {
+    Names names;
+    for (const Check& check : checks)
+        if (check.verdict.outcome == outcome) names.insert(check.name.substr(0, check.name.find(',')));
+    return names;
+}
+
+const Fault& first_fault(const std::vector<Check>& checks) {
+    for (const Check& check : checks)
+        if (check.verdict.outcome == Outcome::kFail) return check.verdict.fault;
+    throw std::logic_error("nothing failed");
+}
+
+}  // namespace
+
+TEST_CASE("a wrong rounding is seen in the formats that round to nearest, no others", "[verify][breakage]") {
+    const auto checks = run("rounding", "number");
+    CHECK(beginnings(checks, Outcome::kFail) == Names{"e5m10", "e6m15", "e8m12"});
+    CHECK(beginnings(checks, Outcome::kPass) == Names{"fp32", "e6m15t", "e8m21t"});
+    const Fault& fault = first_fault(checks);
+    CHECK_THAT(fault.where, Catch::StartsWith("add(0x") && Catch::EndsWith("in e5m10"));
+    CHECK_THAT(fault.expected, Catch::StartsWith("0x"));
+    CHECK_THAT(fault.got, Catch::StartsWith("0x"));
+    CHECK(fault.expected != fault.got);
+    CHECK_THAT(fault.options, Catch::Contains("-DRAYA_FRACTION_BITS=10") && Catch::Contains("RAYA_BREAK_ROUNDING"));
+    CHECK_FALSE(fault.remedies.empty());
+}
+
+TEST_CASE("a contracted multiply-add is seen, and said to be one", "[verify][breakage]") {
+    const auto checks = run("contraction", "number fp32");
+    REQUIRE(checks.size() == 1);
+    CHECK_THAT(checks[0].verdict.told, Catch::Contains("mul_add") && !Catch::Contains(" of mad"));
+    CHECK_THAT(checks[0].verdict.fault.where, Catch::StartsWith("mul_add("));
+}
+
+TEST_CASE("a division by the reciprocal is seen", "[verify][breakage]") {
+    const auto checks = run("division", "number fp32");
+    REQUIRE(failures(checks).size() == 1);
+    CHECK_THAT(checks[0].verdict.told, Catch::Contains(" of div") && !Catch::Contains(" of mul"));
+}
+
+TEST_CASE("a wrong rule for equal distances is seen where spheres coincide", "[verify][breakage]") {
+    const auto checks = run("tie", ", fp32");
+    CHECK(beginnings(checks, Outcome::kFail) == Names{"known hits of spheres"});
+    CHECK(beginnings(checks, Outcome::kPass) ==
+          Names{"known hits of planes", "known hits of polygons", "known hits of cones", "grid"});
+    CHECK_THAT(first_fault(checks).where, Catch::Contains("equal distances"));
+    CHECK_THAT(first_fault(checks).expected, Catch::StartsWith("object 2"));
+    CHECK_THAT(first_fault(checks).got, Catch::StartsWith("object 3"));
+}
+
+TEST_CASE("a walk that ends too soon is seen by hits that lie farther away", "[verify][breakage]") {
+    const auto checks = run("walk", ", fp32");
+    CHECK(failures(checks).size() == 5);
+    CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_grid"));
+}
+
+TEST_CASE("faults of whole numbers, barriers and copies are seen where they are", "[verify][breakage]") {
+    struct Row {
+        const char* breakage;
+        Names wrong;
+    };
+    const Row rows[] = {
+        {"", {}},
+        {"mapping", {"mapping: cyclic, block fold", "mapping: blocks"}},
+        {"barrier", {"local memory and barriers, 32 work-items"}},
+        {"copy", {"copies of blocks"}},
+        {"rotation", {"ring: rotations of 2 PEs", "ring: rotations of 7 PEs", "ring: rotations of 256 PEs"}},
+        {"exchange",
+         {"torus3d: exchange of whole sides", "torus3d: exchange of single boxes", "torus2d: exchange of whole sides",
+          "torus2d: exchange of single boxes"}}};
+    for (const Row& row : rows) {
+        CAPTURE(row.breakage);
+        CHECK(failures(run(row.breakage, "machine")) == row.wrong);
+    }
+}
+
+TEST_CASE("a wrong border of the filter is seen in its images alone, with the pixel", "[verify][breakage]") {
+    const auto checks = run("border", "image glass");
+    CHECK(failures(checks) == Names{"glass fp32 filter: cyclic:5 on 10"});
+    CHECK(checks.size() > 4);
+    CHECK_THAT(first_fault(checks).where, Catch::StartsWith("row 0, column 19"));
+}
+
+TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify][breakage]") {
+    const VerifySettings settings{.kernel_dir = "/no/such/folder", .only = "machine"};
+    const auto checks = verify(choose_device(""), settings);
+    CHECK(count_of(checks, Outcome::kFail) > 5);
+    CHECK(count_of(checks, Outcome::kPass) > 5);  // transfers need no kernel
+}
+
+TEST_CASE("faults have names", "[verify][breakage]") {
+    CHECK(breakage_named("").options.empty());
+    CHECK_THROWS_WITH(breakage_named("everything"),
+                      Catch::Contains("--break everything") && Catch::Contains("rounding"));
+}
+
+}  // namespace raya

@@ -1,0 +1,53 @@
+// The known pictures: what the default device makes of them plainly, and what the double-precision reference sees.
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "cli/run_program.hpp"
+#include "reference/reference.hpp"
+#include "verify/make_pictures.hpp"
+
+namespace raya {
+
+// Those that raya verify --quick makes are not made here once more: tools.verify compares them.
+TEST_CASE("pictures that are not in verify --quick are what the default device makes of them", "[verify]") {
+    for (const char* name :
+         {"planes fp32 corners", "mirrors spa22 axes", "polygons spa22", "spheres e8m12t", "glass e8m21"}) {
+        CAPTURE(name);
+        const Picture& picture = picture_named(name);
+        CHECK(pixel_hash(plain_picture(picture)) == known_picture(picture).hash);
+    }
+}
+
+TEST_CASE("known pictures in fp32 are what the reference sees", "[verify]") {
+    for (const Picture& picture : pictures()) {
+        if (picture.format != "fp32" || picture.antialias != AntialiasMethod::kNone) continue;
+        CAPTURE(picture.name);
+        const Scene scene = scene_of(picture);
+        const reference::Options options{.width = kPictureSide,
+                                         .height = kPictureSide,
+                                         .bounces = kPictureBounces,
+                                         .corners = picture.sampling == Sampling::kCorners};
+        const reference::Difference d =
+            reference::compare(reference::render(scene, options), known_picture(picture).image.rgb, scene, options);
+        CHECK(d.psnr_db >= 50);
+        CHECK(d.over == d.excused);
+    }
+}
+
+TEST_CASE("known pictures come back from their text", "[verify]") {
+    const std::string text = file_contents(RAYA_SOURCE_DIR "/host/verify/pictures.txt");
+    const std::vector<KnownPicture> all = parse_pictures(text);
+    CHECK(all.size() == pictures().size());
+    CHECK(pictures_text(all) == text);
+}
+
+TEST_CASE("a picture whose pixels are not those of its hash is refused", "[verify]") {
+    const KnownPicture& known = known_picture(pictures().front());
+    std::string text = pictures_text({known});
+    CHECK_NOTHROW(parse_pictures(text));
+    text.replace(text.find(known.hash), 1, known.hash[0] == '0' ? "1" : "0");
+    CHECK_THROWS_AS(parse_pictures(text), std::logic_error);
+    CHECK_THROWS_AS(parse_pictures("3f8/0/0\n"), std::logic_error);
+}
+
+}  // namespace raya
