@@ -8,8 +8,6 @@ class App;
 
 namespace raya {
 
-inline constexpr int kExitCheckFailed = 4;
-
 /// Thrown by a command that has done its work, where what it was asked to check does not hold. What was found is
 /// printed already.
 struct CheckFailure {
