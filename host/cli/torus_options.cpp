@@ -41,7 +41,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         ->default_str("all");
     add("--queue", t.queue,
         "Packets that wait in a node at most; a queue that is too short is refused with the length that would do; "
-        "default: what the memory leaves, at most 4096",
+        "default: what the memory leaves, at most 8192",
         "N");
     add("--packets", t.packets,
         "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; "

@@ -23,11 +23,13 @@ LinkExchange::LinkExchange(Session& session, const raya_torus& torus, std::uint3
       sent_(session.buffer<std::uint32_t>("sent boxes", std::size_t{RAYA_LINKS} * nodes_)) {}
 
 void LinkExchange::clear() {
-    session_.fill("clear boxes", inboxes_, 0);
-    session_.fill("clear boxes", outboxes_, 0);
     sent_flags_.assign(sent_.size(), 0);
     flags_there_ = sent_flags_;
     session_.fill("clear boxes", sent_, 0);
+    // Only the word that says how many packets a box holds: boxes are large, and most of their pages are never touched.
+    for (Buffer<std::uint32_t>* boxes : {&inboxes_, &outboxes_})
+        session_.copy_blocks("clear boxes", sent_, {.pitch = 1}, *boxes, {.pitch = box_words(capacity_)}, 1,
+                             sent_.size());
     visited_.assign(sent_.size(), 0);
     packets_.assign(sent_.size(), 0);
 }

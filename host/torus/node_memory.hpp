@@ -61,6 +61,6 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t fewest,
                          const NodeTrial& trial = {});
 
-inline constexpr std::uint32_t kDefaultQueue = 4096;
+inline constexpr std::uint32_t kDefaultQueue = 8192;
 
 }  // namespace raya

@@ -82,6 +82,9 @@ void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob
 
 }  // namespace
 
+// Returns that room is made for before they come, at most: 128 MB, of which only what is used is ever touched.
+constexpr std::uint64_t kReservedReturns = 1 << 22;
+
 // Who is told of packets, and in which supersteps.
 struct PacketWatch {
     PacketSink sink{};
@@ -162,6 +165,7 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     const StepLog::Step rendering = p.session.step("render");
     TorusResult result;
     std::vector<ReturnPacket> returns;
+    returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
     try {
         p.run(result, returns, progress, {sink, packets_every}, step_sink);
     } catch (const Standstill& still) {
