@@ -76,7 +76,7 @@ TEST_CASE("without a limit the queue is the one asked for, or the default", "[to
         return std::vector<std::uint32_t>{buffers.queue, buffers.box};
     };
     CHECK(plan(0, 5) == std::vector<std::uint32_t>{kDefaultQueue, kDefaultQueue / 4});
-    CHECK(plan(0, 5000) == std::vector<std::uint32_t>{5000, 1250});  // what a hit can ask for, where that is more
+    CHECK(plan(0, 10000) == std::vector<std::uint32_t>{10000, 2500});  // what a hit can ask for, where that is more
     CHECK(plan(5, 5) == std::vector<std::uint32_t>{5, 1});
     CHECK(plan(11, 5) == std::vector<std::uint32_t>{11, 2});
     CHECK(plan(100'000, 5) == std::vector<std::uint32_t>{100'000, 25'000});
