@@ -34,8 +34,12 @@ void hits_by_grid(__global const uint* restrict job,
     r.limit = fmin(r.limit, num_all(15.5f));
 #endif
     tree t;
+    ray_pool pool;
     clear_tree(&t);
-    const hit h = find_hit(job, &t, r.limit > 0.0f, r);
+    open_pool(&pool);
+    put_rays(job, &pool, 0, &t, r.limit > 0.0f, r, 0);
+    find_hits(job, &pool, 0);
+    const hit h = take_hit(&pool, 0, &t);
     store_index(objects + first, h.object);
     store_bits(distances + first, h.distance);
 }

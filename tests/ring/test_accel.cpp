@@ -164,6 +164,34 @@ TEST_CASE("of a plane, a polygon held apart and listed ones at equal distances t
     }
 }
 
+// Lights in a ceiling of squares: a shadow ray meets the square around its light where it ends, or just before, or
+// behind.
+TEST_CASE("a hit where a ray ends is none, in whichever voxel it is found", "[ring][accel]") {
+    Session session(choose_device(""));
+    const std::string format = GENERATE("fp32", "spa22", "e5m10");
+    Scene scene = project_scene("planes");
+    scene.planes.clear();
+    scene.cones.clear();
+    scene.spheres = {{{0, 0, 8}, 0.5, 0}};  // makes the box higher than the ceiling
+    const auto square = [](double x, double y, double z, double side) {
+        return Polygon{{{x, y, z}, {x + side, y, z}, {x + side, y + side, z}, {x, y + side, z}}, {}, 0};
+    };
+    scene.polygons = {square(-8, -8, 0, 16)};
+    for (int i = 0; i < 256; ++i) scene.polygons.push_back(square(i % 16 - 8, i / 16 - 8, 4, 1));
+    scene.lights = {{{0.5, 0.5, 4}, {}}, {{-3, 2, 4}, {}}, {{2.25, -4.75, 4}, {}}};
+    scene.view.from = {1, -6, 3};
+    scene.view.at = {0, 0, 0};
+    scene.view.up = {0, 0, 1};
+    const RingCase c{.width = 48, .height = 40, .pes = 8, .format = format};
+    const RingResult plain = render_with(session, scene, c, {});
+    CHECK(plain.all.events[RAYA_SHADOW_HITS] > 0);
+    CHECK(plain.all.events[RAYA_LIT] > 0);
+    for (const Accel& accel : {kAutomatic, cut(5, 6, 7), cut(3, 2, 16)}) {
+        CAPTURE(format, accel_text(accel));
+        CHECK(answer_of(render_with(session, scene, c, accel)) == answer_of(plain));
+    }
+}
+
 TEST_CASE("supersampling through a grid gives the same pixels", "[ring][accel]") {
     Session session(choose_device(""));
     RingCase c{.width = 32, .height = 24, .pes = 8};
