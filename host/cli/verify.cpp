@@ -18,6 +18,7 @@ namespace {
 
 struct VerifyCommand {
     std::string device, report, kernel_dir, only, breakage;
+    std::uint32_t lanes = 0;
     bool quick = false, full = false;
 };
 
@@ -98,7 +99,8 @@ void run_verify(const VerifyCommand& command) {
     const VerifySettings settings{.depth = command.full ? Depth::kFull : Depth::kQuick,
                                   .breakage = breakage_named(command.breakage),
                                   .kernel_dir = command.kernel_dir,
-                                  .only = command.only};
+                                  .only = command.only,
+                                  .lanes = command.lanes};
     std::vector<DeviceChecks> all;
     bool right = true;
     for (const cl::Device& device : devices_of(command.device)) {
@@ -127,6 +129,12 @@ void add_verify_command(CLI::App& program) {
         ->type_name("FILE.json");
     command->add_option("--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
         ->type_name("DIR");
+    command
+        ->add_option("--lanes", options->lanes,
+                     "This width of lanes alone, for compilers that are slow on wide vectors; default: the device's "
+                     "own, with --full all")
+        ->check(CLI::IsMember({1, 4, 8, 16}))
+        ->type_name("V");
     command
         ->add_option("--only", options->only,
                      "Only checks with this text in \"LAYER NAME\", as printed: number, \"image glass\", spa22, ...")

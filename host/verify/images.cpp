@@ -184,8 +184,11 @@ void verify_images(Verification& v) {
         const std::vector<Rendering> more = all_builds();
         renderings.insert(renderings.end(), more.begin(), more.end());
     }
+    const auto has_lanes = [&](const Rendering& r) {
+        return r.lanes == 0 || v.given_lanes() == 0 || r.lanes == v.given_lanes();
+    };
     for (const Rendering& r : renderings)
-        if (v.full() || r.quick)
+        if ((v.full() || r.quick) && has_lanes(r))
             v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
 }
 

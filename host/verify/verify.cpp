@@ -25,15 +25,15 @@ Program Verification::build(Session& session, const std::string& file, std::vect
 }
 
 KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size) const {
-    return {.lanes = lanes,
+    return {.lanes = lanes ? lanes : settings_.lanes,
             .group_size = group_size,
             .kernel_dir = settings_.kernel_dir,
             .more_options = settings_.breakage.options};
 }
 
 std::vector<std::uint32_t> Verification::lanes() const {
-    if (full()) return {1, 4, 8, 16};
-    return {default_lanes(info_)};
+    if (full() && settings_.lanes == 0) return {1, 4, 8, 16};
+    return {own_lanes()};
 }
 
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished) {

@@ -23,6 +23,7 @@ struct VerifySettings {
     Breakage breakage{};
     std::filesystem::path kernel_dir{};  // kernels from disk in place of the program's own
     std::string only{};                  // checks with this in "LAYER NAME" alone; empty: all
+    std::uint32_t lanes = 0;             // this width alone, 1, 4, 8 or 16; 0: the device's own, with kFull all
 };
 
 using CheckSink = std::function<void(const Check&)>;
@@ -48,7 +49,11 @@ class Verification {
     /// The same for a renderer's kernels.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 
-    /// Lanes that --full tries; else the device's own.
+    /// The only width of lanes to try; 0: none is given.
+    std::uint32_t given_lanes() const { return settings_.lanes; }
+    /// Lanes that are asked for, or the device's own.
+    std::uint32_t own_lanes() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
+    /// All widths of lanes to try.
     std::vector<std::uint32_t> lanes() const;
 
     std::vector<Check> take_checks() { return std::move(checks_); }

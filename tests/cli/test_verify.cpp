@@ -54,10 +54,18 @@ TEST_CASE("verify takes every usable device in turn", "[cli][verify]") {
     CHECK_THAT(run.out, Catch::Contains("3 checks passed"));
 }
 
+TEST_CASE("verify with one width of lanes says so in its checks", "[cli][verify]") {
+    const Outcome run = run_raya({"verify", "--lanes", "4", "--only", "number fp32"});
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK_THAT(run.out, Catch::Contains("PASS  number    fp32, 4 lanes") && Catch::Contains("1 checks passed"));
+}
+
 TEST_CASE("verify refuses what makes no sense", "[cli][verify]") {
     CHECK(run_raya({"verify", "--quick", "--full"}).code == 2);
     CHECK(run_raya({"verify", "--break", "everything"}).code == 2);
     CHECK(run_raya({"verify", "--report", "/no/such/folder/report.json"}).code == 2);
+    CHECK(run_raya({"verify", "--lanes", "3"}).code == 2);
     CHECK(run_raya({"verify", "--device", "no such device"}).code == 3);
     CHECK_FALSE(contains(run_raya({"verify", "--help"}).out, "--break"));
 }
