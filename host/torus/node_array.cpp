@@ -110,7 +110,7 @@ void NodeArray::route() {
 }
 
 void NodeArray::accept(bool tight, std::uint32_t superstep) {
-    session_.launch("accept", *accept_, nodes_, options_.group_size, settings_.torus, buffers_.queue, buffers_.box,
+    session_.launch("accept", *accept_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, buffers_.box,
                     buffers_.queue, new_packets_, static_cast<cl_uint>(tight), superstep, rays_.sent(),
                     homeward_.sent(), Local{options_.group_size}, queues_, rays_.inboxes(), homeward_.inboxes(),
                     homeward_.outboxes(), returns_, status_, ended_);

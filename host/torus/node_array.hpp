@@ -59,8 +59,8 @@ class NodeArray {
         Kernel<Words, Words, cl_uint, cl_uint, cl_uint, cl_uint, Local, State, State, Counters, Counters, Counters>;
     using Trace = Kernel<Words, Words, cl_uint, cl_uint, Local, State, State, Counters, Counters, Counters>;
     using Route = Kernel<Words, Words, cl_uint, cl_uint, cl_uint, Local, State, State, State, State, State, Counters>;
-    using Accept = Kernel<raya_torus, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, Words, Words, Local, State,
-                          State, State, State, State, State, Counters>;
+    using Accept = Kernel<Words, Words, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, Words, Words, Local,
+                          State, State, State, State, State, State, Counters>;
 
     template <class K>
     std::unique_ptr<K> build(const std::string& name, const std::vector<std::string>& all);

@@ -55,7 +55,8 @@ static inline uint pass_returns(__global uint* inbox, __global uint* to, uint us
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void accept(const raya_torus torus,
+void accept(__global const uint* restrict memories,     // nodes' words, one after another (kernels/shared/node.h)
+            __global const uint* restrict starts,       // [node]: where its words start
             const uint capacity,                        // packets that a queue holds
             const uint box,                             // packets that a box holds
             const uint host_capacity,                   // returns that wait for the host at most
@@ -75,6 +76,7 @@ void accept(const raya_torus torus,
 {
     const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0);
     const int root = number == RAYA_ROOT;
+    const raya_torus torus = ((__global const raya_node*)(memories + starts[number]))->torus;
     const uint home = raya_home_link(torus, number);
     __global uint* home_box = root ? returns : return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);
     __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
