@@ -38,7 +38,7 @@ VECTORS
 chmod +x "$build/raya" "$build"/tests/*
 
 fail() { echo "FAILED: $1"; echo "$out"; exit 1; }
-matrix() { code=0; out=$("$root/tools/portability" --build "$build" "$@" 2>/dev/null) || code=$?; }
+matrix() { code=0; out=$("$root/tools/portability" --build "$build" "$@" 2>"$build/stderr") || code=$?; }
 expect() { [[ $out == *"$1"* ]] || fail "no '$1'"; }  # expect TEXT
 
 matrix --only "PoCL loopvec"
@@ -60,4 +60,16 @@ matrix --only "no such implementation"
 matrix --only GPU --checks defects --list
 ((code == 0)) || fail "exit code $code of --list"
 expect "GPU: "
+
+# The page is never written from a part of the matrix.
+page=$(<"$root/docs/portability.md")
+for part in "--only PoCL" "--checks renders" "--only PoCL --checks defects"; do
+    # shellcheck disable=SC2086  # several words
+    matrix --write $part
+    ((code == 2)) || fail "exit code $code of --write $part"
+    grep -q "would lose" "$build/stderr" || fail "no word on why --write $part is refused"
+done
+[[ $page == "$(<"$root/docs/portability.md")" ]] || fail "docs/portability.md was written"
+matrix --checks renders,nonsense
+((code == 2)) || fail "exit code $code of an unknown check"
 echo "tools/portability: as expected"
