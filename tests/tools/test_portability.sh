@@ -23,7 +23,8 @@ case $1 in
     devices) printf '#  device  platform\n0  toy  Toy\n\n0: OpenCL 3.0, driver 1\n' ;;
     render)
         while [[ $1 != --report ]]; do shift; done
-        echo '{"image": {"hash": "'"${POCL_DEVICES:-same}"'"}}' >"$2" ;;
+        [[ -e $0.hash ]] && right=$(<"$0.hash") || right=5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a
+        echo '{"image": {"hash": "'"${POCL_DEVICES:-$right}"'"}}' >"$2" ;;
 esac
 RAYA
 cat >"$build/tests/portability_defects" <<'DEFECTS'
@@ -38,8 +39,35 @@ VECTORS
 chmod +x "$build/raya" "$build"/tests/*
 
 fail() { echo "FAILED: $1"; echo "$out"; exit 1; }
-matrix() { code=0; out=$("$root/tools/portability" --build "$build" "$@" 2>"$build/stderr") || code=$?; }
+matrix() { code=0; out=$("$root/tools/portability" --build "$build" --hashes "$build/renders.csv" "$@" 2>"$build/stderr") || code=$?; }
 expect() { [[ $out == *"$1"* ]] || fail "no '$1'"; }  # expect TEXT
+
+# Hashes: written once, then what every implementation is held against, the first one too.
+matrix --write-hashes
+((code == 0)) || fail "exit code $code of --write-hashes"
+expect "17 images, 17 of them new or changed"
+real=$root/tests/portability/renders.csv
+cut -d, -f1,2 "$real" | diff - <(cut -d, -f1,2 "$build/renders.csv") || fail "$real lacks images; tools/portability --write-hashes"
+proved=0
+while IFS=, read -r scene options hash; do
+    name="$scene ${options#--format }"
+    name=${name/--antialias /}
+    known=$(sed -n "s/^${name/supersample/axes}: //p" "$root/host/verify/pictures.txt")
+    [[ -z $known || $known == "$hash" ]] || fail "$name: $hash in $real, $known in host/verify/pictures.txt"
+    proved=$((proved + ${#known} / 32))
+done < <(grep -v '^#' "$real")
+((proved == 7)) || fail "$proved images of $real are in host/verify/pictures.txt, not 7"
+echo 11111111111111111111111111111111 >"$build/raya.hash"
+matrix --only "PoCL loopvec" --checks renders
+((code == 1)) || fail "exit code $code where the only implementation makes another image"
+expect "11111111111111111111111111111111; right: 5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a"
+rm "$build/raya.hash"
+sed -i '/cones,--format spa22/d' "$build/renders.csv"
+matrix --only "PoCL loopvec" --checks renders
+((code == 1)) || fail "exit code $code where a hash is missing"
+expect "right: not in renders.csv, see --write-hashes"
+matrix --write-hashes
+expect "17 images, 1 of them new or changed"
 
 matrix --only "PoCL loopvec"
 ((code == 0)) || fail "exit code $code where all is right"
@@ -53,7 +81,7 @@ expect "| PoCL loops | toy | OpenCL 3.0, driver 1 | FAIL 1/1 |"
 expect "PoCL loops, number: FAIL add: bits differ"
 expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | FAIL |"
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
-expect "basic; right: same"
+expect "basic; right: 5a5a5a5a"
 
 matrix --only "no such implementation"
 ((code == 1)) || fail "exit code $code where nothing ran"
