@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # tools/portability with stand-ins for raya and its test programs: what it makes of answers that are right, wrong, or missing.
+#   test_portability.sh RAYA     RAYA: the built program, which alone runs kernels here, under Oclgrind
 set -euo pipefail
+raya=$(readlink -f "$1")
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
@@ -82,6 +84,26 @@ expect "PoCL loops, number: FAIL add: bits differ"
 expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | FAIL |"
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
 expect "basic; right: 5a5a5a5a"
+
+# Oclgrind: the program renders, right to the bit, with a kernel that also writes beyond a buffer. Then the same without that.
+cp -r "$root/kernels" "$build/kernels"
+kernel=$build/kernels/ring/trace.cl
+mv "$build/raya" "$build/stand_in"
+cat >"$build/raya" <<RAYA
+#!/usr/bin/env bash
+"$build/stand_in" "\$@"
+[[ \$1 != render ]] || exec "$raya" render "$root/scenes/planes.nff" -o "$build/x.pfm" --quiet --size 2 --pes 1 --lanes 1 --kernel-dir "$build/kernels"
+RAYA
+chmod +x "$build/raya"
+matrix --only oclgrind --checks renders,defects
+((code == 0)) || fail "exit code $code where Oclgrind has nothing to report"
+expect "| 3 right | 1 known |"
+grep -qF "(size_t)pe * capacity * 3;" "$kernel" || fail "trace.cl has no '(size_t)pe * capacity * 3;' any more; give this test another place"
+sed -i 's/(size_t)pe \* capacity \* 3;/&\n    pixels[1 << 26] = 0;/' "$kernel"
+matrix --only oclgrind --checks renders,defects
+((code == 1)) || fail "exit code $code where Oclgrind reports a write beyond a buffer"
+expect "| FAIL | 1 known |"
+expect "Oclgrind, renders: spheres --format fp32 --lanes 1: found by Oclgrind: Invalid write of size 4 at global memory address"
 
 matrix --only "no such implementation"
 ((code == 1)) || fail "exit code $code where nothing ran"
