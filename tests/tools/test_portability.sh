@@ -17,11 +17,13 @@ case $1 in
         [[ $2 == --help ]] && { echo "  --quick"; exit 0; }
         status=PASS
         [[ ${POCL_WORK_GROUP_METHOD-} == loops ]] && status=FAIL
+        [[ -e $0.slow ]] && sleep 20
         while [[ $1 != --only ]]; do shift; done
         layer=${2% }
         [[ $layer == image ]] && check='"name": "groups", "status": "SKIP", "told": "one work-item only"'
         [[ $layer == number ]] && check='"name": "add", "status": "'$status'", "told": "bits differ"'
-        echo '{"devices": [{"checks": ['"${check:+{\"layer\": \"$layer\", $check\}}"']}]}' >"$4" ;;
+        echo '{"devices": [{"checks": ['"${check:+{\"layer\": \"$layer\", $check\}}"']}]}' >"$4"
+        [[ ! -e $0.crash ]] || kill -SEGV $$ ;;
     devices) printf '#  device  platform\n0  toy  Toy\n\n0: OpenCL 3.0, driver 1\n' ;;
     render)
         while [[ $1 != --report ]]; do shift; done
@@ -75,6 +77,7 @@ matrix --only "PoCL loopvec"
 ((code == 0)) || fail "exit code $code where all is right"
 expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | 1 known |"
 expect "PoCL loopvec, image: SKIP groups: one work-item only"
+[[ $out == *$'\n'"7 cells: 4 right, 0 FAIL, 3 not decided." ]] || fail "the last line does not count the cells"
 expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 in place of 9: a reason"
 
 matrix --only PoCL
@@ -84,6 +87,25 @@ expect "PoCL loops, number: FAIL add: bits differ"
 expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | FAIL |"
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
 expect "basic; right: 5a5a5a5a"
+
+# Nothing is right: every case skipped; too slow. A check that ends right and then crashes.
+matrix --only "PoCL loopvec" --checks image,machine
+((code == 1)) || fail "exit code $code where nothing was decided"
+expect "2 cells: 0 right, 0 FAIL, 2 not decided. Nothing is right of: PoCL loopvec."
+touch "$build/raya.slow"
+matrix --only "PoCL loopvec" --checks number --limit 1
+((code == 1)) || fail "exit code $code where all was too slow"
+expect "| too slow |"
+expect "PoCL loopvec, number: not done after 1 s"
+matrix --only "PoCL loopvec" --checks number,renders --limit 1
+((code == 0)) || fail "exit code $code where one check was too slow"
+expect "2 cells: 1 right, 0 FAIL, 1 not decided."
+rm "$build/raya.slow"
+touch "$build/raya.crash"
+matrix --only "PoCL loopvec" --checks number,renders
+((code == 1)) || fail "exit code $code where verify crashed after its last check"
+expect "number: exit code -11, though no check failed"
+rm "$build/raya.crash"
 
 # Oclgrind: the program renders, right to the bit, with a kernel that also writes beyond a buffer. Then the same without that.
 cp -r "$root/kernels" "$build/kernels"
