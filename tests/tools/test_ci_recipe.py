@@ -18,8 +18,8 @@ FAULTS = [("verify --quick", "verify --quik"), ("verify --quick", "verify --lane
           ("build/raya verify", "build/raya verifies"), ("cmake --preset release", "cmake --preset relase"),
           ("cmake --build build -j2", "cmake --build bild -j2"), ("--output-on-failure", "--output-on-failures"),
           ("--output-junit junit.xml", "--output-junit tests.xml"), ("build/junit.xml", "junit.xml"), ("tools/setup\n", "tools/setup --all\n"),
-          ("tools/setup\n", "tools/set-up\n"),
-          ("--report verify.json", "--report verified.json")]
+          ("tools/setup\n", "tools/set-up\n"), ("tools/portability >", "tools/portability --wirte >"),
+          ("mesa-opencl-icd", "mesa-opencl"), ("--report verify.json", "--report verified.json")]
 
 
 def commands(script):
