@@ -4,7 +4,7 @@ tools/portability, what is uploaded is written, tests report where tools/test do
 
     tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 where Python has no yaml (Debian: python3-yaml)
 """
-import json, re, shlex, shutil, subprocess, sys, tempfile
+import functools, json, re, shlex, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -79,7 +79,7 @@ def wrong_with_cmake(words):
     if words[1] == "--preset":
         presets = {p["name"]: p for p in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]}
         return "" if words[2] in presets else f"no preset {words[2]}"
-    return "" if words[1:3] == ["--build", "build"] and re.fullmatch(r"(-j\d+)?", "".join(words[3:])) else "not as tools/test builds"
+    return "" if words[1:3] == ("--build", "build") and re.fullmatch(r"(-j\d+)?", "".join(words[3:])) else "not as tools/test builds"
 
 
 def wrong_with_ctest(words):
@@ -93,11 +93,12 @@ def wrong_with_ctest(words):
 
 def wrong_with_packages(words):
     if words[1] != "install":
-        return "" if words[1:] == ["update"] else "unknown"
+        return "" if words[1:] == ("update",) else "unknown"
     strange = {w for w in words[2:] if not w.startswith("-")} - packages_of_setup() - optional_packages()
     return f"neither in tools/setup nor named by tools/portability: {strange}" if strange else ""
 
 
+@functools.cache  # most commands are the same with each fault
 def wrong_with(words, raya, scratch):
     """What is wrong with one command, or nothing."""
     name = words[0]
@@ -125,7 +126,7 @@ def faults_of(workflow, page, raya, scratch):
     # The page's own commands: indented lines that start with one.
     lines = [line.strip() for line in page.splitlines() if line.startswith("    ")]
     told = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
-    faults = [f"{' '.join(words)}: {wrong}" for words, _ in own + told if (wrong := wrong_with(words, raya, scratch))]
+    faults = [f"{' '.join(words)}: {wrong}" for words, _ in own + told if (wrong := wrong_with(tuple(words), raya, scratch))]
     written = set().union(*(files_of(*pair) for pair in own))
     uploaded = [name for step in steps for name in step.get("with", {}).get("path", "").split() if "upload" in step.get("uses", "")]
     faults += [f"{name} is uploaded, and no step writes it" for name in uploaded if name not in written]
