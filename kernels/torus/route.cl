@@ -55,7 +55,6 @@ void route(__global const uint* restrict memories,  // as for trace_voxel
         limit[RAYA_HOME] = root ? host_capacity : box;
         used[RAYA_STAYS] = used[RAYA_GONE] = *moved = 0;
     }
-    node_barrier();
     for (uint first = 0; first < count; first += RAYA_GROUP) {
         const uint slot = first + item;
         const uint16 packet = packet_at(queue, min(slot, count - 1));

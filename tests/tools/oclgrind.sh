@@ -57,23 +57,23 @@ check_run() {  # check_run SCENE OPTIONS OPTIONS_OF_THE_DEFAULT_DEVICE
 }
 
 # The check itself must be able to fail: a kernel with a fault, made by replacing a line, must be reported.
-check_fault() {  # check_fault FILE OLD NEW REPORT ANTIALIAS
+check_fault() {  # check_fault FILE OLD NEW REPORT OPTION...
     rm -rf "$scratch/kernels" "$scratch/log"
     cp -r "$root/kernels" "$scratch/kernels"
-    local kernel=$scratch/kernels/ring/$1
+    local kernel=$scratch/kernels/$1
     grep -qF -- "$2" "$kernel" || fail "$1 has no '$2' any more; give this check another fault"
     local text
     text=$(<"$kernel")
     printf '%s\n' "${text/"$2"/"$3"}" >"$kernel"
-    under_oclgrind render "$root/scenes/planes.nff" -o "$scratch/image.pfm" --quiet --size 4 --pes 2 --lanes 1 --group 4 \
-        --antialias "$5" --kernel-dir "$scratch/kernels" || true
+    under_oclgrind render "$root/scenes/planes.nff" -o "$scratch/image.pfm" --quiet --size 4 --lanes 1 --group 4 \
+        --kernel-dir "$scratch/kernels" "${@:5}" || true
     grep -qF -- "$4" "$scratch/log" || fail "with '$3' in place of '$2' Oclgrind does not report '$4'"
 }
 
-check_fault trace.cl "barrier(CLK_LOCAL_MEM_FENCE);" "" "data race" none
-check_fault pixel_store.clh "store->totals[e] = 0;" ";" "Uninitialized value" none
-check_fault trace.cl "pixels + (size_t)pe * capacity * 3" "pixels + (size_t)pe * capacity * 4" "Invalid write" none
-check_fault filter.cl "sums + (size_t)pe * capacity * 3" "sums + (size_t)(pe + 1) * capacity * 3" "Invalid read" filter
+check_fault ring/trace.cl "barrier(CLK_LOCAL_MEM_FENCE);" "" "data race" --pes 2
+check_fault ring/pixel_store.clh "store->totals[e] = 0;" ";" "Uninitialized value" --pes 2
+check_fault ring/trace.cl "pixels + (size_t)pe * capacity * 3" "pixels + (size_t)pe * capacity * 4" "Invalid write" --pes 2
+check_fault ring/filter.cl "sums + (size_t)pe * capacity * 3" "sums + (size_t)(pe + 1) * capacity * 3" "Invalid read" --pes 2 --antialias filter
 
 for scene in "${scenes[@]}"; do
     for options in "${runs[@]}"; do check_run "$scene" "$options" "--lanes 1 --group 1 --pes 54"; done
@@ -84,8 +84,14 @@ for options in "${exchanges[@]}"; do
     method=$(sed -E 's/--(pes|offset|group|lanes|fold) [a-z0-9]+//g' <<<"$options")
     check_run "${scenes[0]}" "$options" "$method --machine grande --format spa22 --pes 1"
 done
+check_fault torus/inject.cl "node_barrier();" "" "data race" --machine torus --nodes 2x1x1
+check_fault torus/route.cl "node_barrier();" "" "data race" --machine torus --nodes 2x1x1
+check_fault torus/accept.cl "node_barrier();" "" "data race" --machine torus --nodes 2x1x1
 # Nodes with several work-items, rays that wait for room, both ways of making primary rays.
 size=6
 check_run cones "--machine torus --nodes 2x2x1 --lanes 4 --group 3 --queue 200" "--machine grande"
 check_run planes "--machine torus --nodes 2x1x2 --lanes 1 --group 4 --inject root --links torus2d" "--machine grande"
-echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, 2 of the torus: nothing to report, the same images"
+# Rays of several trees in a pool, lanes that take the next one.
+size=4
+check_run glass "--machine grande --accel grid --lanes 4 --group 3 --pes 2" "--machine grande"
+echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, 2 of the torus, one of the grid: nothing to report, the same images"
