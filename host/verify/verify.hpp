@@ -38,7 +38,6 @@ class Verification {
     Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished);
 
     const DeviceInfo& device() const { return info_; }
-    const Breakage& breakage() const { return settings_.breakage; }
     bool full() const { return settings_.depth == Depth::kFull; }
 
     /// Runs one check in a session of its own: a failed command may leave a context of no use.
