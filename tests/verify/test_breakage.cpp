@@ -82,6 +82,25 @@ TEST_CASE("a walk that ends too soon is seen by hits that lie farther away", "[v
     CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_grid"));
 }
 
+TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify][breakage]") {
+    struct Row {
+        const char *breakage, *only;
+        Names wrong;
+    };
+    const Row rows[] = {
+        {"rounding", "image cones e5m10", {"cones e5m10: cyclic:8 on 20, division refined"}},
+        {"contraction", "image glass fp32: cyclic:8 on 20", {"glass fp32: cyclic:8 on 20"}},
+        {"division", "image ties fp32: cyclic:8 on 20, division refined", {}},
+        {"division", "image glass fp32: cyclic:8 on 7", {"glass fp32: cyclic:8 on 7, block fold, 9 pixels a launch"}},
+        {"tie", "image ties", {"ties fp32: cyclic:8 on 20, division refined"}},
+        {"walk", "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
+        {"walk", "image polygons fp32: torus3d 2x2x2", {"polygons fp32: torus3d 2x2x2"}}};
+    for (const Row& row : rows) {
+        CAPTURE(row.breakage, row.only);
+        CHECK(failures(run(row.breakage, row.only)) == row.wrong);
+    }
+}
+
 TEST_CASE("faults of whole numbers and barriers are seen where they are", "[verify][breakage]") {
     struct Row {
         const char* breakage;
