@@ -12,6 +12,7 @@
 #include "scene/split_mix.hpp"
 #include "verify/known_hits.hpp"
 #include "verify/verify.hpp"
+#include "verify/words.hpp"
 
 namespace raya {
 namespace {
@@ -78,6 +79,8 @@ class HitKernels {
                                         Buffer<std::uint32_t>&>(kernel);
         session_.launch(kernel, function, rays.count() / lanes_, 1, words, from, objects, distances);
         Hits hits{std::vector<std::uint32_t>(rays.count()), std::vector<std::uint32_t>(rays.count())};
+        session_.fill("objects", objects, kPoison);
+        session_.fill("distances", distances, kPoison);
         session_.read("objects", objects, hits.objects);
         session_.read("distances", distances, hits.distances);
         return hits;

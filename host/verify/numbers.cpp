@@ -6,6 +6,7 @@
 
 #include "verify/known_answers.hpp"
 #include "verify/verify.hpp"
+#include "verify/words.hpp"
 
 namespace raya {
 namespace {
@@ -63,7 +64,7 @@ std::vector<std::uint32_t> run_rows(Session& session, const Program& program, co
     auto from = session.buffer<float>("operands", 3 * rows.count());
     auto to = session.buffer<std::uint32_t>("results", kVerifiedOperations.size() * rows.count());
     for (std::size_t k = 0; k < 3; ++k) session.write("operands", from, rows.operands[k], k * rows.count());
-    session.fill("results", to, 0xffffffffu);
+    session.fill("results", to, kPoison);
     auto kernel = program.kernel<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>("operations");
     session.launch("operations", kernel, rows.count() / lanes, 1, from, static_cast<cl_uint>(rows.count()), to);
     std::vector<std::uint32_t> results(to.size());

@@ -11,6 +11,7 @@
 #include "torus/link_exchange.hpp"
 #include "torus/topology.hpp"
 #include "verify/verify.hpp"
+#include "verify/words.hpp"
 
 namespace raya {
 namespace {
@@ -57,6 +58,7 @@ Verdict check_bus(Session& session) {
     Bus bus(session, counted);
     const Words words = numbered(100'003);
     auto everywhere = session.buffer<std::uint32_t>("broadcast words", words.size());
+    session.fill("broadcast words", everywhere, kPoison);
     bus.broadcast(everywhere, words);
     Words got(words.size());
     session.read("read back", everywhere, got);

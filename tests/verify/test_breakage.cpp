@@ -1,10 +1,14 @@
 // verify fails when it must: each fault, put in on purpose, is seen by the checks that it concerns and by no others.
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "error.hpp"
+#include "report/scratch_folder.hpp"
 #include "verify/verify.hpp"
 
 namespace raya {
@@ -98,6 +102,32 @@ TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify
     for (const Row& row : rows) {
         CAPTURE(row.breakage, row.only);
         CHECK(failures(run(row.breakage, row.only)) == row.wrong);
+    }
+}
+
+TEST_CASE("a kernel that does nothing finds no right answers", "[verify][breakage]") {
+    struct Row {
+        const char *file, *kernel, *only;
+        std::size_t wrong;
+    };
+    const Row rows[] = {
+        {"hits.cl", "hits_of_all", ", fp32", 5},         {"hits.cl", "hits_by_grid", ", fp32", 5},
+        {"machine.cl", "find_owners", "mapping", 7},     {"machine.cl", "find_ways", "ways", 1},
+        {"machine.cl", "turn_round", "local memory", 2}, {"operations.cl", "operations", "number fp32", 1}};
+    for (const Row& row : rows) {
+        CAPTURE(row.kernel);
+        const ScratchFolder scratch;
+        const std::filesystem::path kernels = scratch / "kernels", file = kernels / "verify" / row.file;
+        std::filesystem::copy(RAYA_SOURCE_DIR "/kernels", kernels, std::filesystem::copy_options::recursive);
+        std::stringstream whole;
+        whole << std::ifstream(file).rdbuf();
+        std::string text = whole.str();
+        const std::size_t body = text.find("\n{", text.find(std::string("void ") + row.kernel + "("));
+        REQUIRE(body != std::string::npos);
+        std::ofstream(file) << text.insert(body + 2, " return;");
+        const auto checks = verify(choose_device(""), {.kernel_dir = kernels, .only = row.only});
+        CHECK(failures(checks).size() == row.wrong);
+        CHECK(checks.size() == row.wrong);
     }
 }
 
