@@ -16,7 +16,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-std::vector<std::string> compiler_remedies() {
+std::vector<std::string> remedies() {
     return {
         "the compiler is wrong about whole numbers or barriers, not about fp32: look for a switch of the driver that\n"
         "turns its optimiser off, and tell its makers",
@@ -39,7 +39,7 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
                    .expected = fmt::format("{0} = 0x{0:08x}", expected[at]),
                    .got = fmt::format("{0} = 0x{0:08x}", got[at]),
                    .options = options,
-                   .remedies = compiler_remedies()});
+                   .remedies = remedies()});
 }
 
 std::vector<std::string> plain_options() { return {"-cl-std=CL1.2"}; }
