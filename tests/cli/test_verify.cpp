@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/failing_device.hpp"
 #include "cli/refusals.hpp"
 
 namespace raya {
@@ -44,6 +45,20 @@ TEST_CASE("verify of nothing says what there is", "[cli][verify]") {
     check_refused(scratch, {"verify", "--only", "no such check", "--report", scratch / "report.json"}, 2,
                   {"--only \"no such check\": no check of", "the layers are number, geometry, machine and image",
                    "\n  number fp32, ", "\n  image glass fp32: ", "--full has more"});
+}
+
+TEST_CASE("verify of what the device cannot do is skipped, and no success", "[cli][verify]") {
+    const Surroundings small_groups = failing_device("clGetDeviceInfo 4100 8");
+    const Outcome some = run_raya({"verify", "--only", "machine local memory"}, small_groups);
+    INFO(some.told());
+    CHECK(some.code == 0);
+    CHECK_THAT(some.out, Catch::Contains("SKIP  machine   local memory and barriers, 32 work-items") &&
+                             Catch::Contains("32 work-items wanted, the device has 8 in a group") &&
+                             Catch::Contains(": 1 checks passed, 0 failed, 1 skipped"));
+    const Outcome none = run_raya({"verify", "--only", "32 work-items"}, small_groups);
+    INFO(none.told());
+    CHECK(none.code == 4);
+    CHECK_THAT(none.out, Catch::Contains(": 0 checks passed, 0 failed, 1 skipped"));
 }
 
 TEST_CASE("verify takes every usable device in turn", "[cli][verify]") {
