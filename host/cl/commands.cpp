@@ -56,14 +56,11 @@ void Session::check_range(const std::string& label, const std::string& buffer, s
 }
 
 void Session::check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
-                           std::size_t count, std::size_t blocks, std::size_t slabs) {
+                           std::size_t count, std::size_t blocks) {
     check_range(label, buffer, at.pitch, at.offset, count);
-    const bool slabs_apart = slabs <= 1 || (at.pitch > 0 && blocks <= at.slab_pitch / at.pitch);
-    const std::size_t before = at.first + (slabs > 0 ? slabs - 1 : 0) * at.slab_pitch;
-    if (!slabs_apart || before > size || (at.pitch > 0 && blocks > (size - before) / at.pitch)) {
-        throw std::out_of_range(fmt::format(
-            "'{}': {} slabs, {} apart, of {} blocks of {} elements from {} on do not lie in buffer '{}' of {}", label,
-            slabs, at.slab_pitch, blocks, at.pitch, at.first, buffer, size));
+    if (at.first > size || (at.pitch > 0 && blocks > (size - at.first) / at.pitch)) {
+        throw std::out_of_range(fmt::format("'{}': {} blocks of {} elements from {} on do not lie in buffer '{}' of {}",
+                                            label, blocks, at.pitch, at.first, buffer, size));
     }
 }
 
@@ -117,19 +114,15 @@ void Session::copy_bytes(const std::string& label, const Place& from, const Plac
            });
 }
 
-void Session::copy_rows(const std::string& label, const Place& from, const Blocks& from_at, const Place& to,
-                        const Blocks& to_at, const Rows& size) {
-    if (size.bytes == 0 || size.rows == 0 || size.slabs == 0) return;
-    submit(fmt::format("'{}': copying {} x {} rows of {} bytes of buffer '{}' into buffer '{}'", label, size.slabs,
-                       size.rows, size.bytes, from.name, to.name),
-           {.label = label,
-            .kind = "copy",
-            .bytes = size.bytes * size.rows * size.slabs,
-            .object = copied(from.name, to.name)},
+void Session::copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
+                        std::size_t to_pitch, std::size_t bytes, std::size_t rows) {
+    if (bytes == 0 || rows == 0) return;
+    submit(fmt::format("'{}': copying {} rows of {} bytes of buffer '{}' into buffer '{}'", label, rows, bytes,
+                       from.name, to.name),
+           {.label = label, .kind = "copy", .bytes = bytes * rows, .object = copied(from.name, to.name)},
            [&](cl::Event* event) {
                queue_.enqueueCopyBufferRect(from.memory, to.memory, {from.offset, 0, 0}, {to.offset, 0, 0},
-                                            {size.bytes, size.rows, size.slabs}, from_at.pitch, from_at.slab_pitch,
-                                            to_at.pitch, to_at.slab_pitch, nullptr, event);
+                                            {bytes, rows, 1}, from_pitch, 0, to_pitch, 0, nullptr, event);
            });
 }
 

@@ -84,21 +84,20 @@ class Session {
     }
 
     /// Where the blocks of a buffer lie: the first at element `first`, `pitch` elements from one to the next; a range
-    /// starts at element `offset` of each. `slab_pitch` elements from one slab of blocks to the next.
+    /// starts at element `offset` of each.
     struct Blocks {
-        std::size_t offset = 0, pitch = 0, slab_pitch = 0, first = 0;
+        std::size_t offset = 0, pitch = 0, first = 0;
     };
 
-    /// Device to device, between different buffers: `count` elements of each of `blocks` blocks in each of `slabs`
-    /// slabs. Does not wait.
+    /// Device to device, between different buffers: `count` elements of each of `blocks` blocks. Does not wait.
     template <class T>
     void copy_blocks(const std::string& label, const Buffer<T>& from, Blocks from_at, Buffer<T>& to, Blocks to_at,
-                     std::size_t count, std::size_t blocks, std::size_t slabs = 1) {
-        check_blocks(label, from.name(), from.size(), from_at, count, blocks, slabs);
-        check_blocks(label, to.name(), to.size(), to_at, count, blocks, slabs);
+                     std::size_t count, std::size_t blocks) {
+        check_blocks(label, from.name(), from.size(), from_at, count, blocks);
+        check_blocks(label, to.name(), to.size(), to_at, count, blocks);
         copy_rows(label, {from.memory(), from.name(), (from_at.first + from_at.offset) * sizeof(T)},
-                  in_bytes(from_at, sizeof(T)), {to.memory(), to.name(), (to_at.first + to_at.offset) * sizeof(T)},
-                  in_bytes(to_at, sizeof(T)), {count * sizeof(T), blocks, slabs});
+                  from_at.pitch * sizeof(T), {to.memory(), to.name(), (to_at.first + to_at.offset) * sizeof(T)},
+                  to_at.pitch * sizeof(T), count * sizeof(T), blocks);
     }
 
     /// Sets every element of `to` to `value`. Does not wait.
@@ -141,14 +140,8 @@ class Session {
 
     static void check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
                             std::size_t count);
-    struct Rows {  // of a copy, and in how many slabs they lie
-        std::size_t bytes, rows, slabs;
-    };
-    static Blocks in_bytes(const Blocks& b, std::size_t size) {
-        return {b.offset * size, b.pitch * size, b.slab_pitch * size, b.first * size};
-    }
     static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
-                             std::size_t count, std::size_t blocks, std::size_t slabs);
+                             std::size_t count, std::size_t blocks);
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
     void launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes);
     void write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
@@ -156,8 +149,9 @@ class Session {
     void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                     std::size_t bytes, void* to);
     void copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes);
-    void copy_rows(const std::string& label, const Place& from, const Blocks& from_at, const Place& to,
-                   const Blocks& to_at, const Rows& size);
+    /// `rows` of so many bytes; pitches in bytes too.
+    void copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
+                   std::size_t to_pitch, std::size_t bytes, std::size_t rows);
     void fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
                     const void* value, std::size_t value_bytes);
 

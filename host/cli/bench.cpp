@@ -28,6 +28,7 @@ namespace {
 struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
+    std::vector<std::string> ways;
     int samples = 7;
     std::string report, baseline;
     double tolerance = 10;  // percent
@@ -35,26 +36,28 @@ struct BenchCommand {
 
 // The first row of the same lanes: what the slow-down of a format is measured against.
 const BenchRow& first_of_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
-    return *std::find_if(rows.begin(), rows.end(),
-                         [&](const BenchRow& r) { return r.warm_up.lanes == row.warm_up.lanes; });
+    return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
+        return r.said.kernel == row.said.kernel && r.said.lanes == row.said.lanes;
+    });
 }
 
 void print_rows(const std::vector<BenchRow>& rows) {
     std::vector<std::vector<std::string>> table = {{"kernel", "format", "lanes", "group", "Mrays/s best", "median",
                                                     "ms best", "median", "speed-up", "slow-down", "build s", "pixels"}};
     for (const BenchRow& row : rows) {
-        const auto rays = static_cast<double>(ray_count(row.warm_up.all.events)) * 1e-6;
-        table.push_back({"trace", format_name(row.format), std::to_string(row.warm_up.lanes),
-                         std::to_string(row.warm_up.group_size), fmt::format("{:.1f}", rays / row.best()),
+        const auto rays = static_cast<double>(row.said.rays) * 1e-6;
+        table.push_back({row.said.kernel, row.said.format, std::to_string(row.said.lanes),
+                         std::to_string(row.said.group_size), fmt::format("{:.1f}", rays / row.best()),
                          fmt::format("{:.1f}", rays / row.median()), fmt::format("{:.2f}", 1e3 * row.best()),
                          fmt::format("{:.2f}", 1e3 * row.median()),
                          fmt::format("{:.2f}", first_of_format(rows, row).median() / row.median()),
                          fmt::format("{:.2f}", row.median() / first_of_lanes(rows, row).median()),
-                         fmt::format("{:.2f}", row.warm_up.build_s), row.hash.substr(0, 8)});
+                         fmt::format("{:.2f}", row.build_s), row.said.hash.substr(0, 8)});
     }
     fmt::print("{}", text_table(table));
     fmt::print(
-        "speed-up: over the first row of the same format; slow-down: against the first row of the same lanes "
+        "speed-up: over the first row of the same format; slow-down: against the first row of the same kernel and "
+        "lanes "
         "(medians);\n"
         "pixels: hash of the image, checked to be the same in all rows of a format\n");
 }
@@ -111,7 +114,7 @@ void finish(const BenchCommand& command, const BenchReport& baseline, const Benc
     if (!command.report.empty()) write_whole_file(command.report, bench_report_text(now));
     if (command.baseline.empty()) return;
     const BenchComparison result = compare_bench(baseline, now, command.tolerance);
-    fmt::print("\nagainst {}, which may be {} % faster:\n{}", command.baseline, command.tolerance, result.text);
+    fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", command.baseline, command.tolerance, result.text);
     std::fflush(stdout);
     if (result.failed())
         throw CheckFailure{fmt::format("{}: of {} rows {} slower by more than {} %, {} with another image",
@@ -125,8 +128,10 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
                                    const RingSettings& settings, const std::vector<NumberFormat>& formats) {
     std::vector<BenchRow> rows;
     for (const NumberFormat& format : formats)
+        for (const std::string& way : command.ways) rows.push_back(render_row(session, scene, settings, format, way));
+    for (const NumberFormat& format : command.ways.empty() ? formats : std::vector<NumberFormat>{})
         for (const std::uint32_t lanes : command.render.lanes ? std::vector{*command.render.lanes} : command.lanes)
-            rows.push_back(prepare_row(session, scene, settings, format, lanes));
+            rows.push_back(trace_row(session, scene, settings, format, lanes));
     check_rows(rows);
     return rows;
 }
@@ -146,14 +151,16 @@ void bench(BenchCommand command) {
         throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
     Session session(choose_device(command.render.device));
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
-    check_comparable(command, baseline, bench_report(rows, scene, settings, session.device()));
+    check_comparable(command, baseline, bench_report(rows, session.device()));
     take_samples(rows, command.samples);
     fmt::print("{} on {}: {} x {} pixels, {} PEs, {} bounces, {} rays; {} samples of 20 ms or more after a warm-up\n",
                scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
-               settings.bounces, ray_count(rows.front().warm_up.all.events), command.samples);
+               settings.bounces, rows.front().said.rays, command.samples);
     print_rows(rows);
-    print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())), command.samples);
-    finish(command, baseline, bench_report(rows, scene, settings, session.device()));
+    if (command.ways.empty())
+        print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
+                         command.samples);
+    finish(command, baseline, bench_report(rows, session.device()));
 }
 
 }  // namespace
@@ -165,6 +172,13 @@ void add_bench_command(CLI::App& program) {
     command->add_option("SCENE", options->render.scene, "Scene in NFF; default: 30 spheres and a plane, 512 x 512")
         ->type_name("SCENE.nff");
     add_render_options(*command, options->render);
+    command
+        ->add_option("--ways", options->ways,
+                     "Time whole renders in place of the trace kernel, in these ways, with commas between them: none, "
+                     "grid: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
+                     "is what the others are held against")
+        ->delimiter(',')
+        ->type_name("none,grid,torus");
     command
         ->add_option("--samples", options->samples, "Samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")

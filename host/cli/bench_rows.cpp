@@ -3,22 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "cli/parse.hpp"
 #include "error.hpp"
 #include "image/image.hpp"
 #include "report/render_report.hpp"
 #include "ring/mapping.hpp"
+#include "ring/ring_renderer.hpp"
+#include "torus/topology.hpp"
+#include "torus/torus_renderer.hpp"
 
 namespace raya {
 namespace {
 
-// One sample is at least 20 ms of kernel time, so that the clock and the launch do not count.
-double sample_seconds(RingRenderer& renderer) {
+// One sample is at least 20 ms, so that the clock and the launch do not count.
+double sample_seconds(const BenchRow& row) {
     constexpr double kLeastSeconds = 0.02;
     double seconds = 0;
     int images = 0;
     while (seconds < kLeastSeconds) {
-        seconds += trace_seconds(renderer.render());
+        seconds += row.image_s();
         ++images;
     }
     return seconds / images;
@@ -32,20 +37,75 @@ std::string array_text(const RingSettings& s) {
     return text + ", accel " + accel_text(s.accel);
 }
 
+BenchMeasurement said_of(const std::string& kernel, const Scene& scene, const RingSettings& settings,
+                         const std::string& array) {
+    return {.kernel = kernel,
+            .scene = scene.name,
+            .size = fmt::format("{}x{}", settings.mapping.width, settings.mapping.height),
+            .array = array,
+            .format = format_name(settings.format),
+            .hash = {}};
+}
+
+// What a renderer's first image says, and how to render more of them: `seconds(result)` is what is measured of one.
+template <class Renderer, class Seconds>
+BenchRow row_of(BenchMeasurement said, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
+                const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds) {
+    const auto first = renderer->render();
+    said.lanes = first.lanes;
+    said.group_size = first.group_size;
+    said.rays = ray_count(events(first));
+    said.hash = pixel_hash(first.image);
+    said.build_options = first.build_options;
+    return {.format = format,
+            .said = std::move(said),
+            .events = events(first),
+            .build_s = first.build_s,
+            .image_s = [renderer, seconds] { return seconds(renderer->render()); }};
+}
+
+const EventCounts& events_of_ring(const RingResult& r) { return r.all.events; }
+const EventCounts& events_of_torus(const TorusResult& r) { return r.events; }
+
+TorusSettings torus_of(const RingSettings& s) {
+    TorusSettings t;
+    t.machine = machine_named("torus");
+    t.width = s.mapping.width;
+    t.height = s.mapping.height;
+    t.torus = make_torus({4, 4, 4}, Links::kTorus3d);
+    t.voxels = {4, 4, 4};
+    t.bounces = s.bounces;
+    t.format = s.format;
+    t.sampling = s.sampling;
+    t.kernels = s.kernels;
+    return t;
+}
+
 }  // namespace
 
-BenchRow prepare_row(Session& session, const Scene& scene, RingSettings settings, const NumberFormat& format,
-                     std::uint32_t lanes) {
+BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, const NumberFormat& format,
+                   std::uint32_t lanes) {
     settings.format = format;
     settings.kernels.lanes = lanes;
-    BenchRow row{.format = format,
-                 .renderer = std::make_unique<RingRenderer>(session, scene, settings),
-                 .warm_up = {},
-                 .hash = {},
-                 .seconds = {}};
-    row.warm_up = row.renderer->render();
-    row.hash = pixel_hash(row.warm_up.image);
-    return row;
+    return row_of(said_of("trace", scene, settings, array_text(settings)), format,
+                  std::make_shared<RingRenderer>(session, scene, settings), events_of_ring, trace_seconds);
+}
+
+BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
+                    const std::string& way) {
+    RingSettings s = settings;
+    s.format = format;
+    if (way == "torus") {
+        const TorusSettings t = torus_of(s);
+        const std::string array = fmt::format("4x4x4 nodes, torus3d, 4x4x4 voxels, {} bounces", t.bounces);
+        return row_of(said_of("torus", scene, s, array), format, std::make_shared<TorusRenderer>(session, scene, t),
+                      events_of_torus, [](const TorusResult& r) { return r.render_s; });
+    }
+    if (way != "none" && way != "grid") throw UserError(fmt::format("--ways {}: must be none, grid or torus", way));
+    s.accel = parse_accel(way);
+    return row_of(said_of("render, " + way, scene, s, array_text(s)), format,
+                  std::make_shared<RingRenderer>(session, scene, s), events_of_ring,
+                  [](const RingResult& r) { return r.render_s; });
 }
 
 const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
@@ -55,21 +115,22 @@ const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRo
 void check_rows(const std::vector<BenchRow>& rows) {
     for (const BenchRow& row : rows) {
         const BenchRow& first = first_of_format(rows, row);
-        if (row.hash == first.hash && row.warm_up.all.events == first.warm_up.all.events) continue;
-        throw DeviceError(
-            fmt::format("{}: {} lanes give another image than {} lanes: {} and {}; the device or its compiler is wrong",
-                        format_name(row.format), row.warm_up.lanes, first.warm_up.lanes, row.hash, first.hash));
+        const bool same_counts = row.said.kernel != first.said.kernel || row.events == first.events;
+        if (row.said.hash == first.said.hash && row.said.rays == first.said.rays && same_counts) continue;
+        throw DeviceError(fmt::format(
+            "{}: {}, {} lanes gives another image than {}, {} lanes: {} and {}; the device or its compiler is wrong",
+            row.said.format, row.said.kernel, row.said.lanes, first.said.kernel, first.said.lanes, row.said.hash,
+            first.said.hash));
     }
 }
 
 void take_samples(std::vector<BenchRow>& rows, int samples) {
     for (int i = 0; i < samples; ++i)
-        for (BenchRow& row : rows) row.seconds.push_back(sample_seconds(*row.renderer));
+        for (BenchRow& row : rows) row.seconds.push_back(sample_seconds(row));
     for (BenchRow& row : rows) std::sort(row.seconds.begin(), row.seconds.end());
 }
 
-BenchReport bench_report(const std::vector<BenchRow>& rows, const Scene& scene, const RingSettings& settings,
-                         const DeviceInfo& device) {
+BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device) {
     BenchReport report{.raya = RAYA_VERSION,
                        .device = device.name,
                        .platform = device.platform,
@@ -77,19 +138,11 @@ BenchReport bench_report(const std::vector<BenchRow>& rows, const Scene& scene, 
                        .driver = device.driver,
                        .rows = {}};
     for (const BenchRow& row : rows) {
-        report.rows.push_back({.kernel = "trace",
-                               .scene = scene.name,
-                               .size = fmt::format("{}x{}", settings.mapping.width, settings.mapping.height),
-                               .array = array_text(settings),
-                               .format = format_name(row.format),
-                               .lanes = row.warm_up.lanes,
-                               .group_size = row.warm_up.group_size,
-                               .rays = ray_count(row.warm_up.all.events),
-                               .best_s = row.seconds.empty() ? 0 : row.best(),
-                               .median_s = row.seconds.empty() ? 0 : row.median(),
-                               .samples = static_cast<int>(row.seconds.size()),
-                               .hash = row.hash,
-                               .build_options = row.warm_up.build_options});
+        report.rows.push_back(row.said);
+        if (row.seconds.empty()) continue;
+        report.rows.back().best_s = row.best();
+        report.rows.back().median_s = row.median();
+        report.rows.back().samples = static_cast<int>(row.seconds.size());
     }
     return report;
 }

@@ -1,7 +1,7 @@
 // The rows of `raya bench`: renderers that are ready, checked before they are timed.
 #pragma once
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,26 +10,32 @@
 
 namespace raya {
 
-/// One row: a renderer that is ready, and what was measured with it.
+/// One row: a renderer that has rendered once, so that its kernels are built, and what was measured with it.
 struct BenchRow {
     NumberFormat format;
-    std::unique_ptr<RingRenderer> renderer;
-    RingResult warm_up;
-    std::string hash;
-    std::vector<double> seconds;  // of each sample, one image each; sorted in the end
+    BenchMeasurement said{};  // all but the times
+    EventCounts events{};     // of the first image
+    double build_s = 0;
+    std::function<double()> image_s{};  // renders one more image: how long it took
+    std::vector<double> seconds{};      // of each sample, one image each; sorted in the end
 
     double best() const { return seconds.front(); }
     double median() const { return seconds[seconds.size() / 2]; }
 };
 
-/// A row that has rendered once, so that its kernels are built.
-BenchRow prepare_row(Session& session, const Scene& scene, RingSettings settings, const NumberFormat& format,
-                     std::uint32_t lanes);
+/// The trace kernel's time on the device.
+BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, const NumberFormat& format,
+                   std::uint32_t lanes);
+
+/// Time of whole renders on the host, from packed scene to image. `way`: none or grid, the ring machine of `settings`
+/// with that --accel; torus, 4 x 4 x 4 nodes without a memory limit. UserError for another way.
+BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
+                    const std::string& way);
 
 /// The first row of the same format: what a row is checked against.
 const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row);
 
-/// DeviceError where rows of one format differ in image or counts.
+/// DeviceError where rows of one format differ in image or rays, or rows of one kernel in what was counted.
 void check_rows(const std::vector<BenchRow>& rows);
 
 /// `samples` samples of each row, of 20 ms or more. The rows take turns, so that a disturbance from outside hits all of
@@ -37,7 +43,6 @@ void check_rows(const std::vector<BenchRow>& rows);
 void take_samples(std::vector<BenchRow>& rows, int samples);
 
 /// The rows as they stand in a report; before take_samples() without times.
-BenchReport bench_report(const std::vector<BenchRow>& rows, const Scene& scene, const RingSettings& settings,
-                         const DeviceInfo& device);
+BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device);
 
 }  // namespace raya

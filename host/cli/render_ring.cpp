@@ -85,15 +85,16 @@ void render_on_ring(const RenderCommand& command) {
     RenderWatch watch(command.trace, command.profile);
     const Scene scene = watch.steps().during("read scene", [&] { return read_nff(command.render.scene); });
     const RingSettings settings = ring_settings(command.render, scene);
-    const cl::Device device = choose_device(command.render.device);
-    Session session(device);
+    const cl::Device device =
+        watch.steps().during("choose device", [&] { return choose_device(command.render.device); });
+    Session session = watch.steps().during("open device", [&] { return Session(device); });
     watch.observe(session);
     RingRenderer renderer(session, scene, settings);
     const RingResult result = render_with_progress(renderer, !command.quiet);
 
     RenderReport report = make_report(command, settings, session.device(), result);
-    if (command.profile) add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result));
     watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
+    if (command.profile) add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result));
     watch.steps().during("write report", [&] { write_report(command, report); });
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
 }

@@ -79,8 +79,9 @@ void render_on_torus(const RenderCommand& command) {
     RenderWatch watch(command.trace, command.profile);
     const Scene scene = watch.steps().during("read scene", [&] { return read_nff(command.render.scene); });
     const TorusSettings settings = torus_settings(command.render, command.torus, scene);
-    const cl::Device device = choose_device(command.render.device);
-    Session session(device);
+    const cl::Device device =
+        watch.steps().during("choose device", [&] { return choose_device(command.render.device); });
+    Session session = watch.steps().during("open device", [&] { return Session(device); });
     watch.observe(session);
     TorusRenderer renderer(session, scene, settings);
     std::optional<PacketTrace> packets;
@@ -91,11 +92,11 @@ void render_on_torus(const RenderCommand& command) {
         render_with_progress(renderer, !command.quiet, packets ? &*packets : nullptr, trace ? &*trace : nullptr);
 
     RenderReport report = make_report(command, settings, session.device(), result);
-    if (command.profile) add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result));
-    watch.steps().during("write image", [&] {
+    watch.steps().during("write images", [&] {
         write_image(command.image, result.image, image_attributes(report, scene.name));
         if (packets) write_whole_file(command.torus.packets, packets->finish());
     });
+    if (command.profile) add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result));
     watch.steps().during("write report", [&] { write_report(command, report); });
     watch.write(session, [&](TraceFile& file) { trace->add_to(file, result, command.trace.pes); });
 }

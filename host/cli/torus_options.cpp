@@ -28,8 +28,8 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     add("--nodes", t.nodes, "Nodes along x, y and z of the scene, at most 65,536 together", "IxJxK")
         ->default_str("4x4x4");
     add("--voxels", t.voxels,
-        "Equal voxels that the scene's box is cut into, at most 2^24 together; more than nodes are laid out "
-        "cyclically, fewer leave nodes empty; default: one for each node",
+        "Equal voxels that the scene's box is cut into, at most 1024 along an axis and 2^24 together; more than "
+        "nodes are laid out cyclically, fewer leave nodes empty; default: one for each node",
         "AxBxC");
     add("--links", t.links, "Links of a node: six, or four as a T805 has them: slabs of nodes beside one another",
         "torus3d|torus2d")
@@ -110,7 +110,7 @@ Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
     const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 together");
     // The sides are 10^6 at most: no product overflows.
     if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMostVoxels)
-        throw UserError(fmt::format("--voxels {}: must be at most 2^24 together, 256 along each side", t.voxels));
+        throw UserError(fmt::format("--voxels {}: must be at most 2^24 together", t.voxels));
     return voxels;
 }
 

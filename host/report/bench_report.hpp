@@ -15,9 +15,9 @@ struct BenchMeasurement {
     std::string array;          // PEs, mapping, bounces, grid: "256 PEs, cyclic:16, 8 bounces, accel none"
     std::string format;
     std::uint32_t lanes = 0, group_size = 0;
-    std::uint64_t rays = 0;                // of one image
-    double best_s = 0, median_s = 0;       // kernel time of one image, > 0
-    int samples = 0;                       // of which these are the best and the median
+    std::uint64_t rays = 0;           // of one image
+    double best_s = 0, median_s = 0;  // of one image, > 0: the kernel's on the device, or a whole render's on the host
+    int samples = 0;                  // of which these are the best and the median
     std::string hash, build_options = {};  // of the image; as the compiler saw them
 
     double best_rate() const { return static_cast<double>(rays) / best_s * 1e-6; }  // Mrays/s

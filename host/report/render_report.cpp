@@ -82,6 +82,8 @@ Json measured_json(const RenderReport& report) {
     json["commands"] = commands_json(m.commands, m.roofline.has_value());
     if (!m.roofline) return json;
     json["builds"] = builds_json(m.builds);
+    if (!m.roofline->lacking.empty()) json["no_roofline"] = m.roofline->lacking;
+    if (!m.roofline->lacking.empty()) return json;
     json["peak"] = peak_json(m.roofline->peak);
     json["roofline"] = roofline_json(*m.roofline);
     return json;

@@ -63,7 +63,8 @@ std::string peak_lines(const DevicePeak& p) {
     return fmt::format(
         "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, {:.2f} roots; "
         "{:.2f} GB/s copied\n"
-        "        measured just now by small programs; copies read and write {} MB\n"
+        "        measured just now by small programs; copies of {} MB, each byte counted as read and as written,\n"
+        "        where the table of commands counts it once\n"
         "op      an addition, multiplication, comparison, multiply-add, division or root of the budgets of the events "
         "that were counted\n"
         "MB      the fewest that the kernel has to read and write. The roof is compute above {:.2f} op/byte, else "
@@ -104,7 +105,8 @@ KernelWork work_of(const std::string& label, const EventCounts& events) {
 
 Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands) {
-    Roofline all{.peak = peak, .rows = {}};
+    Roofline all{.peak = peak};
+    if (!is_known(peak)) all.lacking = "the device does not time its commands";
     if (!is_known(peak)) return all;
     for (const KernelWork& work : works)
         for (const LabelSummary& c : commands)
@@ -114,7 +116,7 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
 }
 
 std::string roofline_table(const Roofline& roofline) {
-    if (!is_known(roofline.peak)) return "the device does not time its commands, so there is no roofline\n";
+    if (!roofline.lacking.empty()) return "no roofline: " + roofline.lacking + "\n";
     std::vector<std::vector<std::string>> rows = {
         {"kernel", "Mrays/s", "Gop", "Gop/s", "MB", "GB/s", "op/byte", "bound", "% of roof", "% of format"}};
     for (const RooflineRow& row : roofline.rows) rows.push_back(cells_of(row));

@@ -53,8 +53,9 @@ struct RooflineRow {
 };
 
 struct Roofline {
-    DevicePeak peak;
-    std::vector<RooflineRow> rows;
+    DevicePeak peak{};
+    std::vector<RooflineRow> rows{};
+    std::string lacking{};  // why there are none, and no peak
 };
 
 /// A row for each work whose label is a kernel's in `commands` and took time; none where the peak is not known.

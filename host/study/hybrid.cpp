@@ -51,7 +51,7 @@ struct SceneGroups {
 std::uint64_t least_bytes(const TorusRun& run, const LabelledScene& scene) {
     const std::uint32_t queue =
         raya_shortest_queue(static_cast<std::uint32_t>(scene.scene.lights.size()), machine_named("torus").bounces);
-    return run.bytes_without_buffers() + node_bytes(0, {queue, std::max(1u, queue / 4)}, links_of_node(run.torus));
+    return run.bytes_without_buffers() + node_bytes(0, buffers_for(queue), links_of_node(run.torus));
 }
 
 Grouped grouped_of(const std::vector<TorusRun>& runs, const LabelledScene& scene) {

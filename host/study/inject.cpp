@@ -142,8 +142,7 @@ std::string finding_of_supersteps(const std::vector<Row>& rows) {
     const Row& last = rows.back();
     return fmt::format(
         "Stepwise the root's way takes {:.2f} times as long with {} nodes, in {} supersteps against {}: the root "
-        "makes "
-        "no more rays at a time than half of its queue holds.",
+        "makes no more rays at a time than an eighth of its queue holds.",
         stepwise(last.of[kRoot]) / stepwise(last.of[kAll]), last.nodes, supersteps(last.of[kRoot]),
         supersteps(last.of[kAll]));
 }

@@ -98,7 +98,7 @@ TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_
     } catch (const UserError&) {  // too short a queue, or what no queue mends
         if (plan.queue == 0) throw;
         TorusPlan longer = plan;
-        longer.queue = 2 * plan.queue < kDefaultQueue ? 2 * plan.queue : 0;
+        longer.queue = 2 * plan.queue < default_queue(raya_nodes(run.torus)) ? 2 * plan.queue : 0;
         return run_on_torus(session, scene, size, longer, sink);
     }
     complete(run);

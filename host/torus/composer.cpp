@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "cl/kernel_source.hpp"
+#include "error.hpp"
 
 namespace raya {
 namespace {
@@ -27,7 +28,7 @@ constexpr std::size_t kGroups = 64;  // work-groups of one work-item, each with 
 
 Contributions sort_contributions(const std::vector<ReturnPacket>& returns, std::uint32_t pixels) {
     if (returns.size() > std::numeric_limits<std::uint32_t>::max())
-        throw std::logic_error("more contributions than 32 bits count");
+        throw UserError("more than 2^32 contributions to one image; render fewer pixels or with fewer --bounces");
     Contributions sorted;
     sorted.starts.assign(std::size_t{pixels} + 1, 0);
     for (const ReturnPacket& packet : returns) {

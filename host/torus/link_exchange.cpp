@@ -35,36 +35,60 @@ void LinkExchange::clear() {
 }
 
 void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>& words) {
-    const std::uint64_t packet_bytes = cargo_.packet_words * sizeof(std::uint32_t);
     std::fill(sent_flags_.begin(), sent_flags_.end(), 0);
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         if (torus_.sides[link / 2] == 1) continue;
-        std::vector<Sender> senders;
-        bool waits = false;
-        std::uint32_t most = 0;
-        std::uint64_t bytes = 0;
         for (std::uint32_t node = 0; node < nodes_; ++node) {
             const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
-            const bool busy = status.at(raya_link_end(torus_, node, link), cargo_.inbox_status + link) > 0;
-            waits |= busy;
-            if (packets == 0 || busy) continue;
-            senders.push_back({node, packets});
-            most = std::max(most, packets);
-            bytes += packets * packet_bytes + kCommandBytes;
+            if (packets == 0 || waits(status, link, node)) continue;
             sent_flags_[std::size_t{link} * nodes_ + node] = 1;
             packets_[std::size_t{node} * RAYA_LINKS + link] += packets;
             words[std::size_t{node} * RAYA_LINKS + link] += std::uint64_t{packets} * cargo_.packet_words;
         }
-        const std::uint64_t side_bytes = nodes_ * (most + 1) * packet_bytes + 2 * kCommandBytes;
-        const std::string label = cargo_.label + " " + link_name(link);
-        if (!waits && side_bytes < bytes)
-            copy_side(label, link, most);
-        else
-            copy_each(label, link, senders);
+        const Session::Blocks boxes{.pitch = box_words(capacity_)};
+        for (const Span& span : spans(status, link)) {
+            Session::Blocks at = boxes;
+            at.first = box_at(link, span.first);
+            session_.copy_blocks(cargo_.label + " " + link_name(link), outboxes_, at, inboxes_, at,
+                                 box_words(span.packets), span.end - span.first);
+        }
     }
     if (sent_flags_ == flags_there_) return;
     session_.write(cargo_.label, sent_, sent_flags_);
     flags_there_ = sent_flags_;
+}
+
+bool LinkExchange::waits(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const {
+    return status.at(raya_link_end(torus_, node, link), cargo_.inbox_status + link) > 0;
+}
+
+std::uint64_t LinkExchange::cost(const Span& span) const {
+    return kCommandBytes + (span.end - span.first) * box_words(span.packets) * sizeof(std::uint32_t);
+}
+
+// A span grows as long as that costs less than another command. An empty box on the way is copied onto an empty one.
+std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, std::uint32_t link) const {
+    std::vector<Span> found;
+    bool closed = true;
+    for (std::uint32_t node = 0; node < nodes_; ++node) {
+        if (waits(status, link, node)) {
+            closed = true;
+            continue;
+        }
+        const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
+        if (packets == 0) continue;
+        const Span alone{node, node + 1, packets};
+        if (!closed) {
+            const Span longer{found.back().first, node + 1, std::max(found.back().packets, packets)};
+            if (cost(longer) <= cost(found.back()) + cost(alone)) {
+                found.back() = longer;
+                continue;
+            }
+        }
+        found.push_back(alone);
+        closed = false;
+    }
+    return found;
 }
 
 void LinkExchange::visit_new(const NodeStatus& status,
@@ -81,27 +105,6 @@ void LinkExchange::visit_new(const NodeStatus& status,
             for (std::size_t i = 0; i < words.size(); i += cargo_.packet_words) visit(node, &words[i]);
         }
     }
-}
-
-// All nodes of the torus as blocks: `stride` of them lie between neighbours along the link's side. Those that do not
-// wrap round are copied in one command, those that do in another.
-void LinkExchange::copy_side(const std::string& label, std::uint32_t link, std::uint32_t packets) {
-    const std::size_t d = link / 2, side = torus_.sides[d];
-    const std::size_t stride = (d > 0 ? torus_.sides[0] : 1) * (d > 1 ? torus_.sides[1] : 1);
-    const std::size_t box = box_words(capacity_), first = box_at(link, 0);
-    const std::size_t slabs = nodes_ / (stride * side), slab = stride * side * box;
-    const std::size_t low = first, second = first + stride * box, last = first + stride * (side - 1) * box;
-    const bool up = link % 2 == 0;
-    session_.copy_blocks(label, outboxes_, {0, box, slab, up ? low : second}, inboxes_,
-                         {0, box, slab, up ? second : low}, box_words(packets), stride * (side - 1), slabs);
-    session_.copy_blocks(label, outboxes_, {0, box, slab, up ? last : low}, inboxes_, {0, box, slab, up ? low : last},
-                         box_words(packets), stride, slabs);
-}
-
-void LinkExchange::copy_each(const std::string& label, std::uint32_t link, const std::vector<Sender>& senders) {
-    for (const Sender& s : senders)
-        session_.copy(label, outboxes_, box_at(link, s.node), inboxes_,
-                      box_at(link, raya_link_end(torus_, s.node, link)), box_words(s.packets));
 }
 
 }  // namespace raya

@@ -39,9 +39,9 @@ class LinkExchange {
     void clear();
 
     /// One exchange: over each link whose inbox at the other end is empty, all packets of the outbox, labelled "LABEL
-    /// +x" and so on. Where many nodes send, boxes are copied for a whole side of the torus at once, in one command for
-    /// those that do not wrap round and one for those that do, as long as the longest needs; where few do, or some must
-    /// wait, each by itself. Adds the words that each link carried to `words`, [node][link].
+    /// +x" and so on. The links of one direction are one command, or several where boxes between must wait or differ so
+    /// much in length that copying as much of each as the longest needs would take longer. Adds the words that each
+    /// link carried to `words`, [node][link].
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
@@ -57,11 +57,14 @@ class LinkExchange {
                    const std::function<void(std::uint32_t node, const std::uint32_t* packet)>& visit);
 
   private:
-    struct Sender {
-        std::uint32_t node, packets;
+    /// Boxes of neighbouring numbers that one command copies: the links of nodes `first` .. `end` - 1, as far as
+    /// `packets` reach.
+    struct Span {
+        std::uint32_t first, end, packets;
     };
-    void copy_side(const std::string& label, std::uint32_t link, std::uint32_t packets);
-    void copy_each(const std::string& label, std::uint32_t link, const std::vector<Sender>& senders);
+    std::vector<Span> spans(const NodeStatus& status, std::uint32_t link) const;
+    std::uint64_t cost(const Span& span) const;  // in bytes that could be copied in its time
+    bool waits(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;  // the inbox is not empty
 
     Session& session_;
     raya_torus torus_;

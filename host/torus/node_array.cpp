@@ -3,14 +3,10 @@
 #include <algorithm>
 
 #include "cl/kernel_source.hpp"
+#include "shared/node_counts.h"
 
 namespace raya {
 namespace {
-
-// What kernels share in local memory beside a node's words; see their parameters.
-constexpr std::size_t kTreatWords =
-    5 + 2 * RAYA_EVENTS + 2 * RAYA_KINDS;  // RAYA_SHARED_WORDS of torus/flight.clh, and one to spare
-constexpr std::size_t kRouteWords = 2 * (RAYA_LINKS + 3) + 1;
 
 std::uint32_t largest_node(const NodeMemories& memories) {
     std::uint32_t largest = 0;
@@ -57,8 +53,9 @@ NodeArray::NodeArray(Session& session, const TorusSettings& settings, const Node
             {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
       homeward_(session, settings.torus, buffers.box,
                 {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX}) {
-    const std::size_t most_shared = std::max(kTreatWords, kRouteWords) + kRouteWords + options.group_size;
-    options_.words_local = 4 * (most_shared + node_words_) <= session.device().local_memory_bytes;
+    const std::size_t most_shared = std::max<std::size_t>(RAYA_SHARED_WORDS, RAYA_ROUTE_WORDS);
+    options_.words_local =
+        sizeof(cl_uint) * (most_shared + own_words() + node_words_) <= session.device().local_memory_bytes;
     std::vector<std::string> all = raya::build_options(options_, session.device());
     all.insert(all.end(), settings.kernels.more_options.begin(), settings.kernels.more_options.end());
     inject_ = build<Inject>("inject", all);
@@ -80,7 +77,7 @@ std::unique_ptr<K> NodeArray::build(const std::string& name, const std::vector<s
 }
 
 NodeArray::Local NodeArray::local_words(std::size_t shared) const {
-    return {shared + options_.group_size + 1 + (options_.words_local ? node_words_ : 0)};
+    return {shared + own_words() + (options_.words_local ? node_words_ : 0)};
 }
 
 void NodeArray::clear() {
@@ -94,19 +91,20 @@ void NodeArray::clear() {
 
 void NodeArray::inject(const PixelSubset& pixels) {
     session_.launch("inject", *inject_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, pixels.stride,
-                    pixels.first, static_cast<cl_uint>(settings_.inject == Injection::kRoot), local_words(kTreatWords),
-                    queues_, status_, events_, made_, ended_);
+                    pixels.first, static_cast<cl_uint>(settings_.inject == Injection::kRoot),
+                    local_words(RAYA_SHARED_WORDS), queues_, status_, events_, made_, ended_);
 }
 
 void NodeArray::trace_voxel(bool tight) {
     session_.launch("trace_voxel", *trace_, nodes_, options_.group_size, memories_, starts_, buffers_.queue,
-                    static_cast<cl_uint>(tight), local_words(kTreatWords), queues_, status_, events_, made_, ended_);
+                    static_cast<cl_uint>(tight), local_words(RAYA_SHARED_WORDS), queues_, status_, events_, made_,
+                    ended_);
 }
 
 void NodeArray::route() {
     session_.launch("route", *route_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, buffers_.box,
-                    buffers_.queue, local_words(kRouteWords), queues_, rays_.outboxes(), homeward_.outboxes(), returns_,
-                    status_, ended_);
+                    buffers_.queue, local_words(RAYA_ROUTE_WORDS), queues_, rays_.outboxes(), homeward_.outboxes(),
+                    returns_, status_, ended_);
 }
 
 void NodeArray::accept(bool tight, std::uint32_t superstep) {

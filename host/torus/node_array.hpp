@@ -64,7 +64,9 @@ class NodeArray {
 
     template <class K>
     std::unique_ptr<K> build(const std::string& name, const std::vector<std::string>& all);
+    /// Local memory of a kernel: `shared` words, own_words(), and the node's words where kernels copy them.
     Local local_words(std::size_t shared) const;
+    std::size_t own_words() const { return options_.group_size + 1; }  // of the work-items
     PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
 
     Session& session_;

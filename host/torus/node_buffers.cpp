@@ -16,8 +16,6 @@ namespace {
 constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
 
-NodeBuffers buffers_for(std::uint32_t queue) { return {queue, std::max(1u, queue / 4)}; }
-
 // The longest queue from `least` to `most` that fits beside the words; `least` fits.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t least,
                             std::uint32_t most) {
@@ -126,6 +124,10 @@ std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fe
 
 }  // namespace
 
+NodeBuffers buffers_for(std::uint32_t queue) { return {queue, std::max(1u, queue / 4)}; }
+
+std::uint32_t default_queue(std::uint32_t nodes) { return std::min(8192u, (1u << 24) / nodes); }
+
 std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::uint32_t links) {
     const std::uint64_t return_boxes = links > 0 ? links + 1 : 0;
     return sizeof(std::uint32_t) * words + kPacketBytes * (buffers.queue + std::uint64_t{2} * links * buffers.box) +
@@ -142,14 +144,32 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
                          const NodeTrial& trial) {
     fewest = std::max(1u, fewest);
     if (queue > 0 && queue < fewest)
-        throw UserError(fmt::format("{}: --queue {}: a single hit can ask for {} packets; use --queue {} or more",
-                                    scene, queue, fewest, fewest));
-    const std::uint32_t most = queue > 0 ? queue : std::max(kDefaultQueue, fewest);
+        throw UserError(
+            fmt::format("{}: --queue {}: the tree of a single ray can ask for {} packets; use --queue {} or more",
+                        scene, queue, fewest, fewest));
+    const std::uint32_t most = queue > 0 ? queue : std::max(default_queue(raya_nodes(torus)), fewest);
     if (!memory_bytes) return buffers_for(most);
     const Demand demand{scene, memories, torus, *memory_bytes, buffers_for(queue > 0 ? queue : fewest)};
     const std::uint64_t words = demand.words(fullest_node(memories));
     if (demand.bytes(words) > *memory_bytes) refuse(demand, fewest, trial);
     return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, most));
+}
+
+void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
+                         const DeviceInfo& device) {
+    const auto fits = [&](const NodeBuffers& b) {
+        const std::uint64_t queues = kPacketBytes * nodes * b.queue;
+        const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + b.box);
+        const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
+        return std::max(queues, boxes) <= device.max_allocation_bytes && all <= device.global_memory_bytes;
+    };
+    if (fits(buffers)) return;
+    std::uint32_t queue = buffers.queue;
+    while (queue > 1 && !fits(buffers_for(queue))) queue /= 2;
+    throw UserError(
+        fmt::format("{}: queues of {} packets and their boxes in {} nodes do not fit into {}; use --queue {} or "
+                    "fewer nodes",
+                    scene, buffers.queue, nodes, device.name, queue));
 }
 
 }  // namespace raya

@@ -12,6 +12,7 @@
 #include "torus/census.hpp"
 #include "torus/composer.hpp"
 #include "torus/node_array.hpp"
+#include "torus/queue_search.hpp"
 #include "torus/windows.hpp"
 
 namespace raya {
@@ -112,7 +113,9 @@ struct TorusRenderer::Parts {
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
     void describe(TorusResult& result) const;
-    std::uint32_t long_enough_queue();
+    std::uint64_t fullest_words() const;
+    bool ends_with(const NodeBuffers& other);
+    std::string remedy();
 };
 
 TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings)
@@ -133,6 +136,7 @@ void TorusRenderer::Parts::divide(std::uint32_t lights) {
     buffers =
         plan_buffers(scene, memories, settings.torus, settings.memory_bytes, settings.queue,
                      raya_shortest_queue(lights, settings.bounces), trial_of(job, settings.format, settings.voxels));
+    check_device_memory(scene, buffers, raya_nodes(settings.torus), session.device());
     set_windows(memories, settings, job, partition);
 }
 
@@ -171,10 +175,9 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     } catch (const Standstill& still) {
         throw UserError(
             fmt::format("{}: the machine stands still in superstep {}: {} packets wait for each other, {} of {} queues "
-                        "are full at {} "
-                        "packets; --queue {} is long enough (tried)",
+                        "are full at {} packets; {}",
                         p.scene, still.superstep, still.live, still.full, raya_nodes(p.settings.torus), p.buffers.queue,
-                        p.long_enough_queue()));
+                        p.remedy()));
     }
     p.compose(result, returns);
     p.collect(result);
@@ -257,14 +260,18 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
             fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], pixels_of(settings)));
 }
 
+std::uint64_t TorusRenderer::Parts::fullest_words() const {
+    std::uint64_t words = 0;
+    for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
+        words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
+    return words;
+}
+
 void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.copies = memories.copies;
     result.buffers = buffers;
     result.copied_words = nodes->words_local() ? memories.words.size() : 0;
-    std::uint64_t words = 0;
-    for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
-        words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
-    result.node_bytes = raya::node_bytes(words, buffers, links_of_node(settings.torus));
+    result.node_bytes = raya::node_bytes(fullest_words(), buffers, links_of_node(settings.torus));
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;
     result.build_options = nodes->build_options();
@@ -272,26 +279,31 @@ void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.commands = session.profile().summary();
 }
 
-// The first of twice, four times, ... the queue with which the machine comes to an end. It is tried, since a machine's
-// traffic is not to be foreseen; memory is not looked at.
-std::uint32_t TorusRenderer::Parts::long_enough_queue() {
-    const NodeBuffers asked = buffers;
-    for (;;) {
-        buffers.queue *= 2;
-        buffers.box = std::max(1u, buffers.queue / 4);
-        build();
-        TorusResult result;
-        std::vector<ReturnPacket> returns;
-        try {
-            run(result, returns, {}, {}, {});
-        } catch (const Standstill&) {
-            continue;
-        }
-        const std::uint32_t enough = buffers.queue;
-        buffers = asked;
-        build();
-        return enough;
+// With another queue, to the end or to a stand.
+bool TorusRenderer::Parts::ends_with(const NodeBuffers& other) {
+    check_device_memory(scene, other, raya_nodes(settings.torus), session.device());
+    buffers = other;
+    build();
+    TorusResult result;
+    std::vector<ReturnPacket> returns;
+    try {
+        run(result, returns, {}, {}, {});
+    } catch (const Standstill&) {
+        return false;
     }
+    return true;
+}
+
+std::string TorusRenderer::Parts::remedy() {
+    const NodeBuffers asked = buffers;
+    const auto bytes = [&](const NodeBuffers& b) {
+        return raya::node_bytes(fullest_words(), b, links_of_node(settings.torus));
+    };
+    const std::string text = longer_queue(asked.queue, {bytes, settings.memory_bytes.value_or(UINT64_MAX),
+                                                        [this](const NodeBuffers& b) { return ends_with(b); }});
+    buffers = asked;
+    build();
+    return text;
 }
 
 }  // namespace raya

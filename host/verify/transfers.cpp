@@ -94,8 +94,7 @@ Verdict check_ring(Session& session, std::size_t pes, std::size_t words) {
     return passed(fmt::format("12 rotations of {} blocks of {} words", pes, words));
 }
 
-// Some nodes' outboxes filled, one exchange, all inboxes compared. `every`: a box in so many has packets; with many the
-// links are copied by whole sides of the torus, with few one by one.
+// Some nodes' outboxes filled, one exchange, all inboxes compared. `every`: a box in so many has packets.
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every) {
     constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS;
     const std::uint32_t nodes = raya_nodes(torus), box = (1 + kCapacity) * kWords;
@@ -109,11 +108,10 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t eve
             const std::uint32_t number = link * nodes + node;
             const std::uint32_t packets = number % every ? 0 : 1 + number % kCapacity;
             status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
-            const std::size_t from = std::size_t{number} * box;
-            const std::size_t to = (std::size_t{link} * nodes + raya_link_end(torus, node, link)) * box;
-            out[from] = expected[to] = packets;
+            const std::size_t at = std::size_t{number} * box;
+            out[at] = expected[at] = packets;
             for (std::uint32_t w = 0; w < packets * kWords; ++w)
-                out[from + kWords + w] = expected[to + kWords + w] = number << 12 | (w + 1);
+                out[at + kWords + w] = expected[at + kWords + w] = number << 12 | (w + 1);
             packets_sent += packets;
         }
     session.write("outboxes", links.outboxes(), out);
@@ -134,12 +132,12 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t eve
 Verdict check_copies(Session& session) {
     struct Shape {
         Session::Blocks from, to;
-        std::size_t count, blocks, slabs;
+        std::size_t count, blocks;
     };
-    const Shape shapes[] = {{{3, 17, 0, 0}, {0, 5, 0, 2}, 5, 40, 1},
-                            {{0, 8, 0, 1}, {4, 31, 0, 0}, 8, 33, 1},
-                            {{2, 9, 99, 5}, {1, 7, 84, 3}, 4, 10, 6},
-                            {{0, 64, 1024, 0}, {0, 64, 1024, 64}, 64, 15, 3}};
+    const Shape shapes[] = {{{3, 17, 0}, {0, 5, 2}, 5, 40},
+                            {{0, 8, 1}, {4, 31, 0}, 8, 33},
+                            {{2, 9, 5}, {1, 7, 3}, 4, 300},
+                            {{0, 64, 0}, {0, 64, 64}, 64, 63}};
     constexpr std::size_t kWords = 4096;
     const Words source = numbered(kWords);
     std::size_t copied = 0;
@@ -147,17 +145,16 @@ Verdict check_copies(Session& session) {
         auto from = session.buffer<std::uint32_t>("from", kWords), to = session.buffer<std::uint32_t>("to", kWords);
         session.write("from", from, source);
         session.fill("to", to, 0xdeadbeefu);
-        session.copy_blocks("blocks", from, s.from, to, s.to, s.count, s.blocks, s.slabs);
+        session.copy_blocks("blocks", from, s.from, to, s.to, s.count, s.blocks);
         Words expected(kWords, 0xdeadbeefu), got(kWords);
-        const auto at = [&](const Session::Blocks& b, std::size_t slab, std::size_t block, std::size_t w) {
-            return b.first + slab * b.slab_pitch + block * b.pitch + b.offset + w;
+        const auto at = [&](const Session::Blocks& b, std::size_t block, std::size_t w) {
+            return b.first + block * b.pitch + b.offset + w;
         };
-        for (std::size_t slab = 0; slab < s.slabs; ++slab)
-            for (std::size_t block = 0; block < s.blocks; ++block)
-                for (std::size_t w = 0; w < s.count; ++w, ++copied)
-                    expected[at(s.to, slab, block, w)] = source[at(s.from, slab, block, w)];
+        for (std::size_t block = 0; block < s.blocks; ++block)
+            for (std::size_t w = 0; w < s.count; ++w, ++copied)
+                expected[at(s.to, block, w)] = source[at(s.from, block, w)];
         session.read("to", to, got);
-        const std::string what = fmt::format("{} slabs of {} blocks of {} words", s.slabs, s.blocks, s.count);
+        const std::string what = fmt::format("{} blocks of {} words", s.blocks, s.count);
         if (auto verdict = difference(expected, got, what, kWords, "buffer")) return *verdict;
     }
     return passed(fmt::format("{} words in {} shapes", copied, std::size(shapes)));
@@ -175,7 +172,7 @@ void verify_transfers(Verification& v) {
     for (const Links links : {Links::kTorus3d, Links::kTorus2d})
         for (const std::uint32_t every : {1u, 50u})
             v.check("machine",
-                    fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "whole sides" : "single boxes"),
+                    fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "all boxes" : "few boxes"),
                     [&](Session& s) {
                         return check_links(s, make_torus({3, 2, 4}, links), every);
                     });

@@ -2,8 +2,8 @@
 //
 //   queue   [node][capacity][16]: packets that wait in the node, from the first slot on
 //   box     [link][node][1 + capacity][w]: a header, whose first word is the number of packets, then the packets, of w = 16 words for rays
-//           and 8 for returns. An outbox is filled by its node and copied into the inbox that the node at the other end of the
-//           link has for that link's direction; both are numbered by the link on which the packets travel
+//           and 8 for returns. An outbox is filled by its node and copied into the inbox at the other end of the link, which the
+//           node there empties; both are numbered by the link's direction and the node at its start
 //   status  [node][RAYA_STATUS_WORDS]
 //
 // Rays and returns have boxes of their own. Returns all go to the root, each node's by its one link home, from inbox to outbox without a queue;
@@ -22,9 +22,9 @@ enum {
     RAYA_STATUS_HOST,           // returns that wait for the host, in the root
     RAYA_STATUS_CYCLES,         // modelled cycles of the superstep, low and high word
     RAYA_STATUS_OUTBOX = 9,         // rays in the outbox of each link
-    RAYA_STATUS_INBOX = 15,         // rays left in the inbox of each link
+    RAYA_STATUS_INBOX = 15,         // rays left in the inbox of each link that leads here
     RAYA_STATUS_RETURN_OUTBOX = 21, // returns in the outbox of each link; other links than the one home stay empty
-    RAYA_STATUS_RETURN_INBOX = 27,  // returns left in the inbox of each link
+    RAYA_STATUS_RETURN_INBOX = 27,  // returns left in the inbox of each link that leads here
     RAYA_STATUS_WORDS = 33
 };
 

@@ -87,8 +87,9 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     uint used = before, home_used = homeward;
     for (uint i = 0; i < RAYA_LINKS; ++i) {
         const uint link = (i + turn) % RAYA_LINKS;
-        __global uint* inbox = inboxes + raya_box_at(link, nodes, number, box, RAYA_PACKET_WORDS);
-        __global uint* return_inbox = return_inboxes + raya_box_at(link, nodes, number, box, RAYA_RETURN_WORDS);
+        const uint start = raya_link_end(torus, number, link ^ 1);  // of the link that leads here
+        __global uint* inbox = inboxes + raya_box_at(link, nodes, start, box, RAYA_PACKET_WORDS);
+        __global uint* return_inbox = return_inboxes + raya_box_at(link, nodes, start, box, RAYA_RETURN_WORDS);
         uint left, returns_left;
         used += empty_inbox(inbox, queue, used, capacity, new_packets, tight, goals, &left);
         home_used += pass_returns(return_inbox, root ? home_box : home_box + RAYA_RETURN_WORDS, home_used, root ? host_capacity : box, &returns_left);

@@ -1,4 +1,4 @@
-// inject: nodes make the packets of primary rays, as long as half of their queue is free.
+// inject: nodes make the packets of primary rays, as long as their queues are short.
 //
 // One work-group is one node. Where the root makes all rays, it takes all pixels in turn and the other nodes do nothing. Else every node makes the
 // rays that enter the box at one of its voxels: it looks at the window of pixels where they must lie, which the host has given it, and keeps those
@@ -9,7 +9,8 @@
 //         count the node's own; where they do not all fit, keep the first that do
 //         put them into the queue; the next pixel is the first that has to wait
 //
-// Half of the queue stays free, and at least what a ray's tree asks for: packets that arrive and packets that hits turn into find room.
+// Rays are made until an eighth of the queue is in use, and never in the room that a ray's tree asks for: packets that arrive and packets that hits turn
+// into find room.
 #include "shading/camera.clh"
 #include "torus/flight.clh"
 
@@ -135,7 +136,7 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
     while (at < row.count && shared[RAYA_SHARED_USED] < most) {
         const uint first = at + item * RAYA_LANES, end = min(row.count, at + RAYA_STEP), room = most - shared[RAYA_SHARED_USED];
         const primaries p = make_primaries(n, row, first, stride);
-        own[item] = lanes_in(p.own);
+        own[item] = mask_count(p.own);
         if (item == 0) *next = end;
         node_barrier();
         uint behind = 0, all = 0;

@@ -8,12 +8,8 @@
 //     close the gaps that were left in the queue
 //
 // The rules of the ways are raya_next_link's and raya_home_link's (kernels/shared/torus.h).
+#include "shared/node_counts.h"
 #include "torus/moves.clh"
-
-#define RAYA_HOME RAYA_LINKS         // goals beside the links
-#define RAYA_STAYS (RAYA_LINKS + 1u)
-#define RAYA_GONE (RAYA_LINKS + 2u)  // there is no packet
-#define RAYA_GOALS (RAYA_LINKS + 3u)
 
 // Where a packet of this node goes.
 static inline uint goal_of(const node* n, uint16 packet) {
@@ -33,7 +29,7 @@ void route(__global const uint* restrict memories,  // as for trace_voxel
            const uint capacity,                     // packets that a queue holds
            const uint box,                          // packets that a box holds
            const uint host_capacity,                // returns that wait for the host at most
-           __local uint* local_words,               // 2 RAYA_GOALS + L + 1, then, where RAYA_WORDS_LOCAL is 1, the words of a node
+           __local uint* local_words,               // RAYA_ROUTE_WORDS + L, then, where RAYA_WORDS_LOCAL is 1, the words of a node
            __global uint* restrict queues,          // [node][capacity][16]
            __global uint* restrict outboxes,        // of rays (kernels/shared/traffic.h)
            __global uint* restrict return_outboxes,
@@ -46,7 +42,7 @@ void route(__global const uint* restrict memories,  // as for trace_voxel
     status += (size_t)number * RAYA_STATUS_WORDS;
     __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
     const uint count = status[RAYA_STATUS_QUEUE];
-    const node n = open_node(memories + starts[number], starts[number + 1] - starts[number], local_words + 2 * RAYA_GOALS + RAYA_GROUP + 1);
+    const node n = open_node(memories + starts[number], starts[number + 1] - starts[number], local_words + RAYA_ROUTE_WORDS + RAYA_GROUP);
     const int root = number == RAYA_ROOT;
     const uint home = raya_home_link(n.torus, number), home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
     __global uint* home_box = root ? returns : return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);

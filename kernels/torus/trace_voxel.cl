@@ -12,7 +12,7 @@
 //
 // Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across a voxel's side (kernels/grid/walk.clh). They visit
 // all voxels in the order of their numbers, remember where their nearest hit was found, and are shaded there.
-// Limits: packets of a node < 2^31; events of a node in one superstep < 2^32.
+// Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64.
 #include "torus/outcome.clh"
 #include "torus/shade_packets.clh"
 
@@ -40,7 +40,7 @@ static inline mask reserve(const node* n, const flight* f, mask m, uint capacity
 }
 
 static inline void count_tests(const flight* f, mask m, objects_words all) {
-    const uint rays = lanes_in(m);
+    const uint rays = mask_count(m);
     count_events(f, RAYA_SPHERE_TESTS, rays * all->spheres);
     count_events(f, RAYA_PLANE_TESTS, rays * all->planes);
     count_events(f, RAYA_POLYGON_TESTS, rays * all->polygons);
@@ -89,7 +89,7 @@ static inline void treat(const node* n, flight* f, mask m, uint place, uint capa
                    choose(m, choose(is_shadow(f), f->limit.all, num_const(RAYA_FAR)), num_all(0.0f))};
     const hit h = closest_hit(n->memory, all, r);
     count_tests(f, m, all);
-    count_shared(f->shared, RAYA_SHARED_PROGRESS, lanes_in(m));
+    count_shared(f->shared, RAYA_SHARED_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));
     const mask wide = m & has_flag(f, RAYA_STATE_WIDE);
     outcome o = walk_on(n, f, r, m & mask_not(wide), place, h);

@@ -1,61 +1,156 @@
 #!/usr/bin/env python3
-"""The workflow of docs/ci: every command in it is there, and raya's commands have the options that it gives them.
+"""The workflow of docs/ci and the commands of docs/ci.md: programs and options exist, packages are those of tools/setup or named by
+tools/portability, what is uploaded is written, tests report where tools/test does. In the end the checks are tried on faults.
 
     tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 where Python has no yaml (Debian: python3-yaml)
 """
-import re, shlex, shutil, subprocess, sys
+import functools, json, re, shlex, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 WORKFLOW = ROOT / "docs/ci/raya-portability.yml"
 PAGE = ROOT / "docs/ci.md"
-SHELL = {"if", "then", "fi", "mkdir", "cmake", "ctest", "apt-get", "["}
+SHELL = {"mkdir", "apt-get", "[", "echo", "cat"}
+NO_SUCH = "--no-such-option"
+
+# Text of the workflow or the page, and what makes it wrong.
+FAULTS = [("verify --quick", "verify --quik"), ("verify --quick", "verify --lanes 3"), ("--tolerance 30", "--tolerance much"),
+          ("build/raya verify", "build/raya verifies"), ("cmake --preset release", "cmake --preset relase"),
+          ("cmake --build build -j2", "cmake --build bild -j2"), ("--output-on-failure", "--output-on-failures"),
+          ("--output-junit junit.xml", "--output-junit tests.xml"), ("build/junit.xml", "junit.xml"), ("tools/setup\n", "tools/setup --all\n"),
+          ("tools/setup\n", "tools/set-up\n"), ("tools/portability >", "tools/portability --wirte >"),
+          ("mesa-opencl-icd", "mesa-opencl"), ("--report verify.json", "--report verified.json")]
 
 
 def commands(script):
-    """The simple commands of a script, each as words."""
-    for line in script.splitlines():
-        for part in re.split(r";|&&", "" if line.lstrip().startswith("#") else line):
-            words = [w for w in shlex.split(part) if w not in ("if", "then", "fi")]
-            if words:
-                yield words
+    """The simple commands of a script: words, and the files that its output goes to."""
+    for line in script.replace("\\\n", " ").splitlines():
+        lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
+        lexer.whitespace_split = True
+        words, written = [], []
+        for token in [*lexer, ";"]:
+            if written and written[-1] is None:
+                written[-1] = token
+            elif token in (">", ">>"):
+                written.append(None)
+            elif token not in (";", "&&", "||"):
+                words += [token] if words or token not in ("if", "then", "else", "fi") else []
+            elif words:
+                yield words, written
+                words, written = [], []
 
 
-def wrong_with(words, raya):
+def output_of(command, **more):
+    done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, **more)
+    return done.returncode, done.stdout + done.stderr
+
+
+def packages_of_setup():
+    line = output_of([ROOT / "tools/setup", "--print"])[1]
+    return set(line.split("--no-install-recommends")[1].split())
+
+
+def optional_packages():
+    """What tools/portability asks for where it is missing."""
+    return set(re.findall(r"\(Debian: ([\w-]+)\)", (ROOT / "tools/portability").read_text()))
+
+
+def junit_of(words):
+    return words[words.index("--output-junit") + 1] if "--output-junit" in words else None
+
+
+def wrong_with_raya(words, raya, scratch):
+    """The command with one option more, which is the only thing that raya may mind: so all is parsed and nothing runs."""
+    code, said = output_of([raya, *words[1:], NO_SUCH], cwd=scratch)
+    return "" if code == 2 and f"The following argument was not expected: {NO_SUCH}\n" in said else said.strip()
+
+
+def wrong_with_tool(words):
+    tool = ROOT / words[0]
+    if not tool.exists():
+        return "no such file"
+    if "argparse" in tool.read_text():
+        code, said = output_of([tool, *words[1:], NO_SUCH])
+        return "" if code == 2 and f"unrecognized arguments: {NO_SUCH}\n" in said else said.strip().splitlines()[-1]
+    return "" if set(words[1:]) <= ({"--print"} if words[0] == "tools/setup" else set()) else f"unknown options {words[1:]}"
+
+
+def wrong_with_cmake(words):
+    if words[1] == "--preset":
+        presets = {p["name"]: p for p in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]}
+        return "" if words[2] in presets else f"no preset {words[2]}"
+    return "" if words[1:3] == ("--build", "build") and re.fullmatch(r"(-j\d+)?", "".join(words[3:])) else "not as tools/test builds"
+
+
+def wrong_with_ctest(words):
+    known = output_of(["ctest", "--help"])[1]
+    missing = [w for w in words[1:] if w.startswith("-") and not re.search(rf"(^|\s){re.sub(r'(?<=^-j)[0-9]+$', '', w)}\b", known)]
+    wanted = junit_of(shlex.split(re.search(r"^ctest .*", (ROOT / "tools/test").read_text(), re.M)[0]))
+    if missing:
+        return f"ctest has no {missing}"
+    return "" if junit_of(words) == wanted else f"tools/test writes {wanted}"
+
+
+def wrong_with_packages(words):
+    if words[1] != "install":
+        return "" if words[1:] == ("update",) else "unknown"
+    strange = {w for w in words[2:] if not w.startswith("-")} - packages_of_setup() - optional_packages()
+    return f"neither in tools/setup nor named by tools/portability: {strange}" if strange else ""
+
+
+@functools.cache  # most commands are the same with each fault
+def wrong_with(words, raya, scratch):
     """What is wrong with one command, or nothing."""
     name = words[0]
     if name == "build/raya":
-        done = subprocess.run([raya, words[1], "--help"], capture_output=True, text=True)
-        if done.returncode != 0:
-            return f"raya has no command {words[1]}"
-        missing = [w for w in words[2:] if w.startswith("--") and not re.search(rf"{w}\b", done.stdout)]
-        return f"raya {words[1]} has no {missing}" if missing else ""
+        return wrong_with_raya(words, raya, scratch)
     if name.startswith("tools/"):
-        return "" if (ROOT / name).exists() else f"no {name}"
-    if name == "cmake" and words[1:2] == ["--preset"]:
-        known = f'"name": "{words[2]}"' in (ROOT / "CMakePresets.json").read_text()
-        return "" if known else f"no preset {words[2]}"
-    if name == "ctest":
-        missing = [w for w in words if w.startswith("--") and w not in subprocess.run(["ctest", "--help"], capture_output=True, text=True).stdout]
-        return f"ctest has no {missing}" if missing else ""
-    return "" if name in SHELL and (shutil.which(name) or name == "apt-get") else f"unknown command {name}"
+        return wrong_with_tool(words)
+    known = {"cmake": wrong_with_cmake, "ctest": wrong_with_ctest, "apt-get": wrong_with_packages}
+    if name in known:
+        return known[name](words)
+    return "" if name in SHELL and shutil.which(name) else "unknown command"
+
+
+def files_of(words, written):
+    """What a command writes, from the root of the repository."""
+    reports = [after for word, after in zip(words, words[1:]) if word == "--report"]
+    return {*written, *reports, *([f"build/{junit_of(words)}"] if junit_of(words) else [])}
+
+
+def faults_of(workflow, page, raya, scratch):
+    """What is wrong with the two texts, a line each; and how many commands they have."""
+    import yaml
+    steps = [step for job in yaml.safe_load(workflow)["jobs"].values() for step in job["steps"]]
+    own = [pair for step in steps for pair in commands(step.get("run", ""))]
+    # The page's own commands: indented lines that start with one.
+    lines = [line.strip() for line in page.splitlines() if line.startswith("    ")]
+    told = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
+    faults = [f"{' '.join(words)}: {wrong}" for words, _ in own + told if (wrong := wrong_with(tuple(words), raya, scratch))]
+    written = set().union(*(files_of(*pair) for pair in own))
+    uploaded = [name for step in steps for name in step.get("with", {}).get("path", "").split() if "upload" in step.get("uses", "")]
+    faults += [f"{name} is uploaded, and no step writes it" for name in uploaded if name not in written]
+    faults += [] if ["tools/setup"] in [words for words, _ in own] else ["no step installs what tools/setup does"]
+    return faults, len(own + told)
 
 
 def main():
     try:
-        import yaml
+        import yaml  # noqa: F401
     except ImportError:
         print("skipped: this Python has no yaml (Debian: python3-yaml)")
         return 77
-    raya = sys.argv[1]
-    steps = [step for job in yaml.safe_load(WORKFLOW.read_text())["jobs"].values() for step in job["steps"]]
-    scripts = [step["run"] for step in steps if "run" in step]
-    # The page's own commands: blocks of code that start with one.
-    page = [line.strip() for line in PAGE.read_text().splitlines() if line.startswith("    ")]
-    scripts += [re.sub(r"\s+#.*", "", line) for line in page if line.startswith(("build/raya", "tools/", "ctest", "cmake"))]
-    faults = [f"{' '.join(words)}: {wrong}" for script in scripts for words in commands(script) if (wrong := wrong_with(words, raya))]
-    print("\n".join(faults) or f"{len(scripts)} scripts: every command is there")
-    return 1 if faults or len(scripts) < 8 else 0
+    raya = str(Path(sys.argv[1]).resolve())
+    workflow, page = WORKFLOW.read_text(), PAGE.read_text()
+    with tempfile.TemporaryDirectory() as scratch:
+        faults, count = faults_of(workflow, page, raya, scratch)
+        for old, new in FAULTS:
+            if old not in workflow:
+                faults.append(f"the workflow has no '{old}' any more; give this test another fault")
+            elif not faults_of(workflow.replace(old, new), "", raya, scratch)[0]:
+                faults.append(f"'{new}' in place of '{old}' is not seen")
+    print("\n".join(faults) or f"{count} commands: all as they should be; {len(FAULTS)} faults: all seen")
+    return 1 if faults or count < 15 else 0
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # tools/portability with stand-ins for raya and its test programs: what it makes of answers that are right, wrong, or missing.
+#   test_portability.sh RAYA     RAYA: the built program, which alone runs kernels here, under Oclgrind
 set -euo pipefail
+raya=$(readlink -f "$1")
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
@@ -15,15 +17,18 @@ case $1 in
         [[ $2 == --help ]] && { echo "  --quick"; exit 0; }
         status=PASS
         [[ ${POCL_WORK_GROUP_METHOD-} == loops ]] && status=FAIL
+        [[ -e $0.slow ]] && sleep 20
         while [[ $1 != --only ]]; do shift; done
         layer=${2% }
         [[ $layer == image ]] && check='"name": "groups", "status": "SKIP", "told": "one work-item only"'
         [[ $layer == number ]] && check='"name": "add", "status": "'$status'", "told": "bits differ"'
-        echo '{"devices": [{"checks": ['"${check:+{\"layer\": \"$layer\", $check\}}"']}]}' >"$4" ;;
+        echo '{"devices": [{"checks": ['"${check:+{\"layer\": \"$layer\", $check\}}"']}]}' >"$4"
+        [[ ! -e $0.crash ]] || kill -SEGV $$ ;;
     devices) printf '#  device  platform\n0  toy  Toy\n\n0: OpenCL 3.0, driver 1\n' ;;
     render)
         while [[ $1 != --report ]]; do shift; done
-        echo '{"image": {"hash": "'"${POCL_DEVICES:-same}"'"}}' >"$2" ;;
+        [[ -e $0.hash ]] && right=$(<"$0.hash") || right=5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a
+        echo '{"image": {"hash": "'"${POCL_DEVICES:-$right}"'"}}' >"$2" ;;
 esac
 RAYA
 cat >"$build/tests/portability_defects" <<'DEFECTS'
@@ -38,13 +43,44 @@ VECTORS
 chmod +x "$build/raya" "$build"/tests/*
 
 fail() { echo "FAILED: $1"; echo "$out"; exit 1; }
-matrix() { code=0; out=$("$root/tools/portability" --build "$build" "$@" 2>/dev/null) || code=$?; }
+matrix() { code=0; out=$("$root/tools/portability" --build "$build" --hashes "$build/renders.csv" "$@" 2>"$build/stderr") || code=$?; }
 expect() { [[ $out == *"$1"* ]] || fail "no '$1'"; }  # expect TEXT
 
+# Hashes: written once, then what every implementation is held against, the first one too.
+matrix --write-hashes
+((code == 0)) || fail "exit code $code of --write-hashes"
+expect "17 images, 17 of them new or changed"
+real=$root/tests/portability/renders.csv
+cut -d, -f1,2 "$real" | diff - <(cut -d, -f1,2 "$build/renders.csv") || fail "$real lacks images; tools/portability --write-hashes"
+proved=0
+while IFS=, read -r scene options hash; do
+    name="$scene ${options#--format }"
+    name=${name/--antialias /}
+    known=$(sed -n "s/^${name/supersample/axes}: //p" "$root/host/verify/pictures.txt")
+    [[ -z $known || $known == "$hash" ]] || fail "$name: $hash in $real, $known in host/verify/pictures.txt"
+    proved=$((proved + ${#known} / 32))
+done < <(grep -v '^#' "$real")
+((proved == 7)) || fail "$proved images of $real are in host/verify/pictures.txt, not 7"
+echo 11111111111111111111111111111111 >"$build/raya.hash"
+matrix --only "PoCL loopvec" --checks renders
+((code == 1)) || fail "exit code $code where the only implementation makes another image"
+expect "11111111111111111111111111111111; right: 5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a"
+rm "$build/raya.hash"
+sed -i '/cones,--format spa22/d' "$build/renders.csv"
+matrix --only "PoCL loopvec" --checks renders
+((code == 1)) || fail "exit code $code where a hash is missing"
+expect "right: not in renders.csv, see --write-hashes"
+matrix --write-hashes
+expect "17 images, 1 of them new or changed"
+
+# What a CI job sets for itself must not choose here.
+export RAYA_BUILD_OPTIONS=-cl-opt-disable POCL_DEVICES=basic OCL_ICD_VENDORS=/nowhere RAYA_NUMBER_CASES=1
 matrix --only "PoCL loopvec"
+unset RAYA_BUILD_OPTIONS POCL_DEVICES OCL_ICD_VENDORS RAYA_NUMBER_CASES
 ((code == 0)) || fail "exit code $code where all is right"
 expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | 1 known |"
 expect "PoCL loopvec, image: SKIP groups: one work-item only"
+[[ $out == *$'\n'"7 cells: 4 right, 0 FAIL, 3 not decided." ]] || fail "the last line does not count the cells"
 expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 in place of 9: a reason"
 
 matrix --only PoCL
@@ -53,11 +89,62 @@ expect "| PoCL loops | toy | OpenCL 3.0, driver 1 | FAIL 1/1 |"
 expect "PoCL loops, number: FAIL add: bits differ"
 expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | FAIL |"
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
-expect "basic; right: same"
+expect "basic; right: 5a5a5a5a"
+
+# Nothing is right: every case skipped; too slow. A check that ends right and then crashes.
+matrix --only "PoCL loopvec" --checks image,machine
+((code == 1)) || fail "exit code $code where nothing was decided"
+expect "2 cells: 0 right, 0 FAIL, 2 not decided. Nothing is right of: PoCL loopvec."
+touch "$build/raya.slow"
+matrix --only "PoCL loopvec" --checks number --limit 1
+((code == 1)) || fail "exit code $code where all was too slow"
+expect "| too slow |"
+expect "PoCL loopvec, number: not done after 1 s"
+matrix --only "PoCL loopvec" --checks number,renders --limit 1
+((code == 0)) || fail "exit code $code where one check was too slow"
+expect "2 cells: 1 right, 0 FAIL, 1 not decided."
+rm "$build/raya.slow"
+touch "$build/raya.crash"
+matrix --only "PoCL loopvec" --checks number,renders
+((code == 1)) || fail "exit code $code where verify crashed after its last check"
+expect "number: exit code -11, though no check failed"
+rm "$build/raya.crash"
+
+# Oclgrind: the program renders, right to the bit, with a kernel that also writes beyond a buffer. Then the same without that.
+cp -r "$root/kernels" "$build/kernels"
+kernel=$build/kernels/ring/trace.cl
+mv "$build/raya" "$build/stand_in"
+cat >"$build/raya" <<RAYA
+#!/usr/bin/env bash
+"$build/stand_in" "\$@"
+[[ \$1 != render ]] || exec "$raya" render "$root/scenes/planes.nff" -o "$build/x.pfm" --quiet --size 2 --pes 1 --lanes 1 --kernel-dir "$build/kernels"
+RAYA
+chmod +x "$build/raya"
+matrix --only oclgrind --checks renders,defects
+((code == 0)) || fail "exit code $code where Oclgrind has nothing to report"
+expect "| 3 right | 1 known |"
+grep -qF "(size_t)pe * capacity * 3;" "$kernel" || fail "trace.cl has no '(size_t)pe * capacity * 3;' any more; give this test another place"
+sed -i 's/(size_t)pe \* capacity \* 3;/&\n    pixels[1 << 26] = 0;/' "$kernel"
+matrix --only oclgrind --checks renders,defects
+((code == 1)) || fail "exit code $code where Oclgrind reports a write beyond a buffer"
+expect "| FAIL | 1 known |"
+expect "Oclgrind, renders: spheres --format fp32 --lanes 1: found by Oclgrind: Invalid write of size 4 at global memory address"
 
 matrix --only "no such implementation"
 ((code == 1)) || fail "exit code $code where nothing ran"
 matrix --only GPU --checks defects --list
 ((code == 0)) || fail "exit code $code of --list"
 expect "GPU: "
+
+# The page is never written from a part of the matrix.
+page=$(<"$root/docs/portability.md")
+for part in "--only PoCL" "--checks renders" "--only PoCL --checks defects"; do
+    # shellcheck disable=SC2086  # several words
+    matrix --write $part
+    ((code == 2)) || fail "exit code $code of --write $part"
+    grep -q "would lose" "$build/stderr" || fail "no word on why --write $part is refused"
+done
+[[ $page == "$(<"$root/docs/portability.md")" ]] || fail "docs/portability.md was written"
+matrix --checks renders,nonsense
+((code == 2)) || fail "exit code $code of an unknown check"
 echo "tools/portability: as expected"

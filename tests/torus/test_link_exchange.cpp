@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <map>
 #include <vector>
@@ -65,7 +66,7 @@ class Boxes {
                 const std::uint32_t end = raya_link_end(torus_, node, link), packets = outbox(link, node);
                 const bool busy = inbox(link, end) > 0, goes = packets > 0 && !busy;
                 wrong_flags += sent[link * nodes_ + node] != goes;
-                const std::size_t to = at(link * nodes_ + end);
+                const std::size_t to = at(link * nodes_ + node);
                 if (busy) touched += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
                 if (!busy && !goes)
                     touched += in_[to] != 0;  // an empty box stays empty, whatever lies behind its header
@@ -81,7 +82,7 @@ class Boxes {
     /// Nodes take some of their inboxes' packets, or none, or all.
     void take(SplitMix& random, std::uint32_t rareness) {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) {
-            std::uint32_t& left = inbox(box / nodes_, box % nodes_);
+            std::uint32_t& left = inbox(box / nodes_, raya_link_end(torus_, box % nodes_, box / nodes_));
             left = random_below(random, rareness) == 0 ? random_below(random, left + 1) : left;
             if (random_below(random, 2)) left = 0;
             in_[at(box)] = left;
@@ -104,7 +105,7 @@ class Boxes {
     }
 
     std::uint64_t arrived() const { return arrived_.size(); }
-    static inline std::uint64_t whole_sides = 0, single_boxes = 0;  // commands of each way of copying
+    static inline std::uint64_t spans = 0, single_boxes = 0;  // commands that copied several boxes, one
 
   private:
     std::uint32_t& outbox(std::uint32_t link, std::uint32_t node) {
@@ -125,20 +126,20 @@ class Boxes {
 
     void arrive(std::uint32_t link, std::uint32_t node, std::uint32_t end) {
         const std::uint32_t packets = outbox(link, node);
-        const std::size_t from = at(link * nodes_ + node), to = at(link * nodes_ + end);
-        CHECK(in_[to] == packets);
-        CHECK(std::equal(&in_[to] + words_, &in_[to] + (1 + packets) * words_, &out_[from] + words_));
-        for (std::uint32_t i = 1; i <= packets; ++i) ++arrived_[in_[to + i * words_]];
+        const std::size_t box = at(link * nodes_ + node);
+        CHECK(in_[box] == packets);
+        CHECK(std::equal(&in_[box] + words_, &in_[box] + (1 + packets) * words_, &out_[box] + words_));
+        for (std::uint32_t i = 1; i <= packets; ++i) ++arrived_[in_[box + i * words_]];
         inbox(link, end) = packets;
         outbox(link, node) = 0;
-        out_[from] = 0;
-        std::fill_n(&out_[from] + words_, capacity_ * words_, kPoison);
+        out_[box] = 0;
+        std::fill_n(&out_[box] + words_, capacity_ * words_, kPoison);
     }
 
     void count_ways() {
         const std::uint64_t box = (1 + capacity_) * words_ * sizeof(std::uint32_t);
         for (const CommandRecord& c : session_.profile().commands())
-            if (c.kind == "copy") (c.bytes > box ? whole_sides : single_boxes) += 1;
+            if (c.kind == "copy") (c.bytes > box ? spans : single_boxes) += 1;
     }
 
     Session& session_;
@@ -175,8 +176,38 @@ TEST_CASE("links of random toruses carry every packet to its neighbour once", "[
         arrived += boxes.arrived();
     }
     CHECK(arrived > 10'000);
-    CHECK(Boxes::whole_sides > 100);
+    CHECK(Boxes::spans > 100);
     CHECK(Boxes::single_boxes > 100);
+}
+
+TEST_CASE("a long box and short ones are copied apart where that moves fewer bytes", "[torus]") {
+    Session session(choose_device(""));
+    constexpr std::uint32_t kCapacity = 4096, kWords = RAYA_PACKET_WORDS, kBox = (1 + kCapacity) * kWords;
+    const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
+    LinkExchange links(session, torus, kCapacity, {"test", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
+    links.clear();
+    NodeStatus status(4);
+    std::vector<std::uint32_t> out(links.outboxes().size()), in(out.size());
+    const std::array<std::uint32_t, 4> packets = {2, 4000, 1, 1};
+    for (std::uint32_t node = 0; node < 4; ++node) {
+        status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = packets[node];
+        out[std::size_t{node} * kBox] = packets[node];
+        for (std::uint32_t w = 0; w < packets[node] * kWords; ++w) out[node * kBox + kWords + w] = node << 24 | w;
+    }
+    session.write("test", links.outboxes(), out);
+    session.clear_profile();
+    std::vector<std::uint64_t> words(std::size_t{4} * RAYA_LINKS);
+    links.exchange(status, words);
+    std::vector<std::uint64_t> copied;
+    for (const CommandRecord& c : session.profile().commands())
+        if (c.kind == "copy") copied.push_back(c.bytes / (4 * kWords));
+    CHECK(copied == std::vector<std::uint64_t>{3, 4001, 2 * 2});
+    session.read("test", links.inboxes(), in);
+    for (std::uint32_t node = 0; node < 4; ++node) {
+        const auto at = in.begin() + node * kBox, end = at + (1 + packets[node]) * kWords;
+        CAPTURE(node);
+        CHECK(std::equal(at, end, out.begin() + node * kBox));
+    }
 }
 
 TEST_CASE("links have the names of their sides", "[torus]") {

@@ -15,6 +15,8 @@ using Catch::Contains;
 
 namespace {
 
+constexpr std::uint32_t kDefaultQueue = 8192;
+
 // Spheres of one surface in voxels of the given numbers of objects, one voxel a node, in a row; no lights, no planes.
 NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
     Scene scene = empty_scene();
@@ -76,11 +78,40 @@ TEST_CASE("without a limit the queue is the one asked for, or the default", "[to
         return std::vector<std::uint32_t>{buffers.queue, buffers.box};
     };
     CHECK(plan(0, 5) == std::vector<std::uint32_t>{kDefaultQueue, kDefaultQueue / 4});
-    CHECK(plan(0, 10000) == std::vector<std::uint32_t>{10000, 2500});  // what a hit can ask for, where that is more
+    CHECK(plan(0, 10000) ==
+          std::vector<std::uint32_t>{10000, 2500});  // what a ray's tree can ask for, where that is more
     CHECK(plan(5, 5) == std::vector<std::uint32_t>{5, 1});
     CHECK(plan(11, 5) == std::vector<std::uint32_t>{11, 2});
     CHECK(plan(100'000, 5) == std::vector<std::uint32_t>{100'000, 25'000});
     CHECK(plan(1, 0) == std::vector<std::uint32_t>{1, 1});
+}
+
+TEST_CASE("the default is shorter on machines of very many nodes", "[torus]") {
+    CHECK(default_queue(1) == kDefaultQueue);
+    CHECK(default_queue(2048) == kDefaultQueue);
+    CHECK(default_queue(4096) == kDefaultQueue / 2);
+    CHECK(default_queue(65536) == 256);
+}
+
+TEST_CASE("queues and boxes that the device cannot hold are refused with those that it can", "[torus]") {
+    DeviceInfo device;
+    device.name = "a small device";
+    // 64 nodes: boxes of 64 x 6 x (1 + 1000) packets of 64 bytes are the largest buffer.
+    device.max_allocation_bytes = 64ull * 6 * 1001 * 64;
+    device.global_memory_bytes = std::uint64_t{1} << 40;
+    const auto told = [&](std::uint32_t queue) {
+        return refusal_of([&] { check_device_memory("s.nff", buffers_for(queue), 64, device); });
+    };
+    CHECK(told(4000) == "not refused");
+    CHECK(told(4003) == "not refused");
+    CHECK(told(4004) ==
+          "s.nff: queues of 4004 packets and their boxes in 64 nodes do not fit into a small device; use --queue 2002 "
+          "or fewer nodes");
+    // All together: queues, boxes on both ends of rays and of returns.
+    device.global_memory_bytes = 64ull * 64 * 4000 + 3 * device.max_allocation_bytes;
+    CHECK(told(4000) == "not refused");
+    --device.global_memory_bytes;
+    CHECK_THAT(told(4000), Catch::Contains("use --queue 2000 or fewer nodes"));
 }
 
 TEST_CASE("the queue is the longest that fits, to the byte", "[torus]") {
@@ -112,11 +143,11 @@ TEST_CASE("the queue is the longest that fits, to the byte", "[torus]") {
     }
 }
 
-TEST_CASE("a queue shorter than a hit can ask for is refused with that number", "[torus]") {
+TEST_CASE("a queue shorter than a ray's tree can ask for is refused with that number", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeMemories memories = row_of_nodes({3, 4}, torus);
     CHECK(refusal_of([&] { plan_buffers("balls.nff", memories, torus, {}, 6, 7); }) ==
-          "balls.nff: --queue 6: a single hit can ask for 7 packets; use --queue 7 or more");
+          "balls.nff: --queue 6: the tree of a single ray can ask for 7 packets; use --queue 7 or more");
     CHECK(plan_buffers("balls.nff", memories, torus, {}, 7, 7).queue == 7);
 }
 

@@ -128,6 +128,48 @@ TEST_CASE("a machine that stands still names a queue that is long enough", "[tor
     CHECK(stood >= 2);  // else this test says nothing
 }
 
+TEST_CASE("the queue that is named fits the memory that a node has", "[torus]") {
+    const Scene scene = project_scene("mirrors");
+    Session session(choose_device(""));
+    TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
+    c.format = "spa22";
+    c.bounces = 8;
+    const auto render = [&](std::uint32_t queue) {
+        c.queue = queue;
+        TorusSettings settings = settings_of(c);
+        settings.memory_bytes = 16384;  // less than twice the shortest queue needs
+        return TorusRenderer(session, scene, settings).render();
+    };
+    const std::string refusal = refusal_of([&] { render(shortest_of(scene, c)); });
+    INFO(refusal);
+    const std::uint32_t enough = enough_of(refusal);
+    REQUIRE(enough > shortest_of(scene, c));
+    CHECK(enough < 2 * shortest_of(scene, c));
+    CHECK(one_image(render(enough)) == ring_image(scene, c));
+}
+
+TEST_CASE("one packet less than just enough stands still", "[torus]") {
+    const Scene scene = project_scene("mirrors");
+    Session session(choose_device(""));
+    TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
+    c.format = "spa22";
+    const std::string expected = ring_image(scene, c);
+    const std::uint32_t shortest = shortest_of(scene, c);
+    const auto outcome = [&](std::uint32_t queue) {
+        c.queue = queue;
+        std::string image;
+        const std::string refusal = refusal_of([&] { image = one_image(render_torus(session, scene, c)); });
+        return image.empty() ? refusal : image;
+    };
+    std::uint32_t queue = shortest;
+    std::string last, here = outcome(queue);
+    for (; here != expected && queue < 4 * shortest; here = outcome(++queue)) last = here;
+    CAPTURE(shortest, queue, last);
+    CHECK(here == expected);
+    REQUIRE(queue > shortest);  // else this test says nothing
+    CHECK_THAT(last, Catch::Contains("stands still") && Catch::Contains("are full at " + std::to_string(queue - 1)));
+}
+
 TEST_CASE("queues of any length give the image or name one that does", "[torus]") {
     const std::uint64_t seed = 616;
     SplitMix random(seed);
