@@ -2,6 +2,7 @@
 #include "verify/verify.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -12,6 +13,8 @@
 #include "cli/parse.hpp"
 #include "error.hpp"
 #include "report/whole_file.hpp"
+#include "verify/supervisor.hpp"
+#include "verify/worker.hpp"
 
 namespace raya {
 namespace {
@@ -20,15 +23,41 @@ struct VerifyCommand {
     std::string device, report, kernel_dir, only, breakage;
     std::uint32_t lanes = 0;
     bool quick = false, full = false;
+    int lines = -1;  // a pipe, in the process that runs the checks (verify/worker.hpp)
+    std::size_t worker_device = 0, worker_done = 0;
+
+    /// Those of the process that runs the checks.
+    std::vector<std::string> arguments() const {
+        std::vector<std::string> all = {"verify", full ? "--full" : "--quick"};
+        const auto add = [&](const char* option, const std::string& value) {
+            if (!value.empty()) all.insert(all.end(), {option, value});
+        };
+        add("--device", device);
+        add("--kernel-dir", kernel_dir);
+        add("--only", only);
+        add("--break", breakage);
+        if (lanes) add("--lanes", std::to_string(lanes));
+        return all;
+    }
 };
 
-// What came of one device.
-struct DeviceChecks {
-    DeviceInfo device;
-    std::vector<Check> checks;
-    double seconds = 0;
+// What runs now, on a terminal; the next line takes its place.
+class RunningLine {
+  public:
+    void show(const std::string& layer, const std::string& name, double seconds) {
+        if (!terminal_) return;
+        fmt::print(stderr, "\r\033[Krunning {} {} ... {:.0f} s", layer, name, seconds);
+        std::fflush(stderr);
+        drawn_ = true;
+    }
+    void clear() {
+        if (drawn_) fmt::print(stderr, "\r\033[K");
+        std::fflush(stderr);
+        drawn_ = false;
+    }
 
-    bool is_right() const { return count_of(checks, Outcome::kFail) == 0 && count_of(checks, Outcome::kPass) > 0; }
+  private:
+    bool terminal_ = isatty(STDERR_FILENO) != 0, drawn_ = false;
 };
 
 // "57 checks passed, 0 failed, 2 skipped in 12.3 s"
@@ -37,31 +66,27 @@ std::string closing_text(const std::vector<Check>& checks, double seconds) {
                        count_of(checks, Outcome::kFail), count_of(checks, Outcome::kSkip), seconds);
 }
 
-DeviceChecks verify_one(const cl::Device& device, const VerifySettings& settings) {
-    DeviceChecks result;
-    result.device = device_info(device);
-    fmt::print("{} ({}, driver {})\n", result.device.name, result.device.platform, result.device.driver);
-    result.checks = verify(device, settings, [&](const Check& check) {
-        result.seconds += check.seconds;
-        fmt::print("{}", check_lines(check));
+DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
+                        std::size_t& devices) {
+    RunningLine running;
+    const auto print = [&](const std::string& line) {
+        running.clear();
+        fmt::print("{}", line);
         std::fflush(stdout);
-    });
-    fmt::print("{}: {}\n", result.device.name, closing_text(result.checks, result.seconds));
+    };
+    const SupervisorSink sink{
+        .device =
+            [&](const DeviceChecks& device, const std::vector<std::string>& left_out) {
+                if (index == 0)
+                    for (const std::string& line : left_out) print(line + "\n");
+                print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
+            },
+        .running = [&](const std::string& layer, const std::string& name,
+                       double seconds) { running.show(layer, name, seconds); },
+        .finished = [&](const Check& check) { print(check_lines(check)); }};
+    DeviceChecks result = supervise(command.arguments(), index, settings, sink, devices);
+    print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
-}
-
-std::vector<cl::Device> devices_of(const std::string& wanted) {
-    if (wanted != "all") return {choose_device(wanted)};
-    std::vector<cl::Device> usable;
-    for (const cl::Device& device : all_devices()) {
-        const DeviceInfo info = device_info(device);
-        if (info.available && info.compiler_available)
-            usable.push_back(device);
-        else
-            fmt::print("{} ({}): not available, or without a compiler; left out\n", info.name, info.platform);
-    }
-    if (usable.empty()) choose_device("");  // throws, with the remedy
-    return usable;
 }
 
 nlohmann::ordered_json report_of(const std::vector<DeviceChecks>& all, bool full) {
@@ -69,10 +94,10 @@ nlohmann::ordered_json report_of(const std::vector<DeviceChecks>& all, bool full
     for (const DeviceChecks& one : all) {
         nlohmann::ordered_json checks = nlohmann::ordered_json::array();
         for (const Check& check : one.checks) checks.push_back(to_json(check));
-        devices.push_back({{"name", one.device.name},
-                           {"platform", one.device.platform},
-                           {"version", one.device.version},
-                           {"driver", one.device.driver},
+        devices.push_back({{"name", one.name},
+                           {"platform", one.platform},
+                           {"version", one.version},
+                           {"driver", one.driver},
                            {"right", one.is_right()},
                            {"passed", count_of(one.checks, Outcome::kPass)},
                            {"failed", count_of(one.checks, Outcome::kFail)},
@@ -100,11 +125,13 @@ void run_verify(const VerifyCommand& command) {
                                   .breakage = breakage_named(command.breakage),
                                   .kernel_dir = command.kernel_dir,
                                   .only = command.only,
-                                  .lanes = command.lanes};
+                                  .lanes = command.lanes,
+                                  .done = command.worker_done};
+    if (command.lines >= 0) return run_worker(command.lines, command.device, command.worker_device, settings);
     std::vector<DeviceChecks> all;
     bool right = true;
-    for (const cl::Device& device : devices_of(command.device)) {
-        all.push_back(verify_one(device, settings));
+    for (std::size_t devices = 1; all.size() < devices;) {
+        all.push_back(verify_one(command, all.size(), settings, devices));
         right = right && all.back().is_right();
     }
     if (all.size() > 1) print_overall(all);
@@ -124,7 +151,10 @@ void add_verify_command(CLI::App& program) {
                       "; all: every usable device, one after another");
     command->add_flag("--quick", options->quick,
                       "The device's own lanes, the usual formats, a dozen images: the default");
-    command->add_flag("--full", options->full, "Every format, width of lanes and group size: some minutes");
+    command->add_flag(
+        "--full", options->full,
+        "Every format, width of lanes and group size: about five minutes with PoCL on an idle CPU, longer where "
+        "compilers are slow on wide vectors");
     command->add_option("--report", options->report, "Write every check, with what is wrong, as JSON")
         ->type_name("FILE.json");
     command->add_option("--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
@@ -141,6 +171,10 @@ void add_verify_command(CLI::App& program) {
         ->type_name("TEXT");
     // For the tests: makes checks fail on purpose, see verify/breakage.hpp. No group: not in the help.
     command->add_option("--break", options->breakage)->group("");
+    // For the process that runs the checks, likewise.
+    command->add_option("--lines", options->lines)->group("");
+    command->add_option("--worker-device", options->worker_device)->group("");
+    command->add_option("--worker-done", options->worker_done)->group("");
     refuse_odd_values(*command);
     command->callback([options] { run_verify(*options); });
 }

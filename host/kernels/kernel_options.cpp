@@ -75,4 +75,8 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     return all;
 }
 
+std::vector<std::string> without_local_words() { return {"-DRAYA_WITHOUT_LOCAL_WORDS"}; }
+
+std::vector<std::string> without_exact_arithmetic() { return {"-DRAYA_WITHOUT_EXACT_ARITHMETIC"}; }
+
 }  // namespace raya

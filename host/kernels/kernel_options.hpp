@@ -54,4 +54,9 @@ void check_kernel_options(const KernelOptions& options, const DeviceInfo& device
 /// `options` as above.
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device);
 
+/// Behind build_options(), these take something away that a device has, so that what kernels do without it is tested on
+/// any: local memory for words; division, square root and a b + c that are rounded correctly.
+std::vector<std::string> without_local_words();
+std::vector<std::string> without_exact_arithmetic();
+
 }  // namespace raya

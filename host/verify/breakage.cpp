@@ -13,13 +13,10 @@ const std::vector<Breakage>& breakages() {
         {.name = "contraction", .options = {"-DRAYA_BREAK_CONTRACTION"}},  // the compiler may fuse a b + c
         {.name = "division", .options = {"-DRAYA_BREAK_DIVISION"}},        // fp32: by the reciprocal
         {.name = "tie", .options = {"-DRAYA_BREAK_TIE"}},                  // of equal distances the last object wins
-        {.name = "walk", .options = {"-DRAYA_BREAK_WALK"}},                // a ray's walk ends a voxel too soon
+        {.name = "walk", .options = {"-DRAYA_BREAK_WALK"}},                // the grid ends a voxel too soon
         {.name = "mapping", .options = {"-DRAYA_BREAK_MAPPING"}},          // products of 64 bits lose their upper half
         {.name = "barrier", .options = {"-DRAYA_BREAK_BARRIER"}},          // work-items read before all have written
-        {.name = "border", .options = {"-DRAYA_BREAK_BORDER"}},  // the filter takes the right border for the middle
-        {.name = "rotation", .skips_rotation = true},
-        {.name = "exchange", .skips_exchange = true},
-        {.name = "copy", .skips_copy = true}};
+        {.name = "border", .options = {"-DRAYA_BREAK_BORDER"}}};  // the filter takes the right border for the middle
     return all;
 }
 

@@ -9,9 +9,6 @@ namespace raya {
 struct Breakage {
     std::string name;
     std::vector<std::string> options{};  // added to every kernel's build options: RAYA_BREAK_* of kernels/
-    bool skips_rotation = false;         // the check of the ring leaves one rotation out
-    bool skips_exchange = false;         // the check of the links leaves one exchange out
-    bool skips_copy = false;             // the check of copies leaves one out
 };
 
 /// Every fault that there is; the first one is none.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -12,12 +13,37 @@
 namespace raya {
 namespace {
 
+bool says_any(const std::string& message, const std::vector<const char*>& words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return message.find(word) != std::string::npos; });
+}
+
+// What to try after a failure that was thrown, by what the message says.
+std::vector<std::string> remedies_for(const std::string& message) {
+    const std::string newer = "a newer driver, or another OpenCL implementation for this device (raya devices)";
+    if (says_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
+                           "CL_OUT_OF_", "bad_alloc"}))
+        return {"memory is short: end other programs that use this device or this machine, and run verify again",
+                newer};
+    if (says_any(message, {"CL_DEVICE_NOT_AVAILABLE", "CL_CONTEXT_TERMINATED", "CL_COMMAND_TERMINATED",
+                           "CL_EXEC_STATUS_ERROR", "illegal read or write"}))
+        return {"the device was lost: does raya devices still list it? does the system's log (dmesg) tell why?",
+                "another program, or a limit on how long a kernel may run, may have ended it", newer};
+    if (says_any(message, {"building program", "CL_INVALID_BUILD_OPTIONS"})) {
+        std::vector<std::string> all = {"the build log above says what the compiler refuses: tell its makers"};
+        const std::vector<std::string> more = compiler_remedies();
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    return {"raya devices: is this the device that you mean?", newer};
+}
+
 Verdict verdict_of(const std::function<Verdict()>& body) {
     const auto broken = [](const std::string& message) {
         const std::size_t end = message.find('\n');
         Fault fault;
         if (end != std::string::npos) fault.where = message.substr(end + 1);
-        fault.remedies = {"raya devices: is this the device that you mean?", "a newer driver"};
+        fault.remedies = remedies_for(message.substr(0, end));
         return failed(message.substr(0, end), fault);
     };
     try {
@@ -83,6 +109,29 @@ nlohmann::ordered_json to_json(const Check& c) {
     json["build_options"] = f.options;
     json["remedies"] = f.remedies;
     return json;
+}
+
+std::vector<std::string> compiler_remedies() {
+    std::vector<std::string> all;
+    const char* given = std::getenv("RAYA_BUILD_OPTIONS");
+    if (given == nullptr || std::string(given).find("-cl-opt-disable") == std::string::npos)
+        all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: the compiler without its optimiser");
+    all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
+    return all;
+}
+
+Check check_of(const nlohmann::ordered_json& json) {
+    const std::string status = json.at("status");
+    Check check{json.at("layer"), json.at("name"), json.at("seconds"), {Outcome::kPass, json.at("told"), {}}};
+    if (status == outcome_name(Outcome::kSkip)) check.verdict.outcome = Outcome::kSkip;
+    if (status != outcome_name(Outcome::kFail)) return check;
+    check.verdict.outcome = Outcome::kFail;
+    check.verdict.fault = {.where = json.at("where"),
+                           .expected = json.at("expected"),
+                           .got = json.at("got"),
+                           .options = json.at("build_options"),
+                           .remedies = json.at("remedies")};
+    return check;
 }
 
 }  // namespace raya

@@ -42,6 +42,9 @@ struct Check {
 /// ours.
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body);
 
+/// What to try where the compiler or the driver may be at fault, without what is tried already.
+std::vector<std::string> compiler_remedies();
+
 /// How many of `checks` ended so.
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 
@@ -51,5 +54,8 @@ std::string check_lines(const Check& check);
 /// An object with layer, name, status, seconds and told; of a failure also where, expected, got, build_options and
 /// remedies.
 nlohmann::ordered_json to_json(const Check& check);
+
+/// The inverse.
+Check check_of(const nlohmann::ordered_json& json);
 
 }  // namespace raya

@@ -12,6 +12,7 @@
 #include "scene/split_mix.hpp"
 #include "verify/known_hits.hpp"
 #include "verify/verify.hpp"
+#include "verify/words.hpp"
 
 namespace raya {
 namespace {
@@ -62,9 +63,13 @@ struct HitBuild {
 class HitKernels {
   public:
     HitKernels(const Verification& v, Session& session, const HitBuild& build)
-        : session_(session), lanes_(build.lanes), program_(v.build(session, "verify/hits.cl", options(v, build))) {}
+        : verification_(v),
+          session_(session),
+          lanes_(build.lanes),
+          program_(v.build(session, "verify/hits.cl", options(v, build))) {}
 
     const std::string& options() const { return program_.options(); }
+    std::vector<std::string> lanes_remedies() const { return verification_.lanes_remedies(lanes_); }
 
     /// By `kernel`, hits_of_all or hits_by_grid, of a job with a grid.
     Hits find(const std::string& kernel, const PackedJob& job, const Rays& rays) {
@@ -74,6 +79,8 @@ class HitKernels {
         auto distances = session_.buffer<std::uint32_t>("distances", rays.count());
         session_.write("job", words, job.words);
         session_.write("rays", from, rays.words);
+        session_.fill("objects", objects, kPoison);
+        session_.fill("distances", distances, kPoison);
         auto function = program_.kernel<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&,
                                         Buffer<std::uint32_t>&>(kernel);
         session_.launch(kernel, function, rays.count() / lanes_, 1, words, from, objects, distances);
@@ -94,6 +101,7 @@ class HitKernels {
         return build_options(options, v.device());
     }
 
+    const Verification& verification_;
     Session& session_;
     std::uint32_t lanes_;
     Program program_;
@@ -108,16 +116,17 @@ PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     return job;
 }
 
-std::vector<std::string> remedies() {
-    return {"are checks of \"number\" wrong too? then those first",
-            "other lanes: raya verify --full says which are right; give --lanes",
-            "a newer driver, or another OpenCL implementation for this device (raya devices)"};
+std::vector<std::string> remedies(const std::vector<std::string>& of_lanes) {
+    std::vector<std::string> all = {"are checks of \"number\" wrong too? then those first"};
+    all.insert(all.end(), of_lanes.begin(), of_lanes.end());
+    all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
+    return all;
 }
 
 // The first ray of which `got` differs; `what` says which ray that is.
 template <class What>
 std::optional<Verdict> first_difference(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
-                                        const std::string& options, const What& what) {
+                                        const HitKernels& kernels, const What& what) {
     std::size_t wrong = 0, first = 0;
     for (std::size_t i = count; i-- > 0;) {
         if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
@@ -129,8 +138,8 @@ std::optional<Verdict> first_difference(const Hits& expected, const Hits& got, c
                   {.where = fmt::format("{}\n{}", what(first), rays.text(first)),
                    .expected = expected.text(first),
                    .got = got.text(first),
-                   .options = options,
-                   .remedies = remedies()});
+                   .options = kernels.options(),
+                   .remedies = remedies(kernels.lanes_remedies())});
 }
 
 Verdict check_known_hits(HitKernels& kernels, const KnownScene& known, const HitBuild& build) {
@@ -148,8 +157,7 @@ Verdict check_known_hits(HitKernels& kernels, const KnownScene& known, const Hit
         const auto what = [&](std::size_t i) {
             return fmt::format("{}: {} ({})", known.name, known.hits[i].what, kernel);
         };
-        if (auto verdict = first_difference(expected, got, rays, known.hits.size(), kernels.options(), what))
-            return *verdict;
+        if (auto verdict = first_difference(expected, got, rays, known.hits.size(), kernels, what)) return *verdict;
     }
     return passed(fmt::format("{} rays, with and without grid", known.hits.size()));
 }
@@ -187,7 +195,7 @@ Verdict check_walk(HitKernels& kernels, const HitBuild& build) {
         const Rays rays = random_rays(build.format, scene_extent(scene), kRays);
         const Hits all = kernels.find("hits_of_all", job, rays), walked = kernels.find("hits_by_grid", job, rays);
         const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
-        if (auto verdict = first_difference(all, walked, rays, kRays, kernels.options(), what)) return *verdict;
+        if (auto verdict = first_difference(all, walked, rays, kRays, kernels, what)) return *verdict;
         for (const std::uint32_t object : all.objects) struck += object != kNothing;
     }
     if (struck < kRays) return failed(fmt::format("only {} of {} rays hit anything", struck, 3 * kRays), {});

@@ -19,20 +19,38 @@ struct Rendering {
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's own
     std::string mapping = "cyclic:8";         // of the ring
     std::uint32_t pes = kPictureSide;
+    const char* fold = "cyclic";          // of slots
+    std::uint32_t pixels_per_launch = 0;  // of each PE; 0: all
     bool grid = false;
     bool torus = false;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
+    bool global_words = false;  // as where local memory is too small for them
+    bool refined = false;       // as where division, square root and a b + c are not rounded correctly
 
     std::string name() const {
         std::string way = torus ? fmt::format("{} {}{}", links_name(links), sides_text(nodes),
                                               inject == Injection::kRoot ? " root" : "")
                                 : fmt::format("{} on {}{}", mapping, pes, grid ? ", grid" : "");
+        if (fold != std::string("cyclic")) way += fmt::format(", {} fold", fold);
+        if (pixels_per_launch) way += fmt::format(", {} pixels a launch", pixels_per_launch);
+        if (global_words) way += ", global words";
+        if (refined) way += ", division refined";
         if (lanes) way += fmt::format(", {}x{}", lanes, group_size);
         return fmt::format("{}: {}", picture, way);
     }
 };
+
+KernelChoice kernels_for(const Verification& v, const Rendering& r) {
+    KernelChoice choice = v.kernels(r.lanes, r.group_size);
+    const auto add = [&](const std::vector<std::string>& options) {
+        choice.more_options.insert(choice.more_options.end(), options.begin(), options.end());
+    };
+    if (r.global_words) add(without_local_words());
+    if (r.refined) add(without_exact_arithmetic());
+    return choice;
+}
 
 struct Rendered {
     Image image;
@@ -42,9 +60,10 @@ struct Rendered {
 Rendered render_on_ring(const Verification& v, Session& session, const Rendering& r) {
     const Picture& picture = picture_named(r.picture);
     RingSettings settings = plain_settings(picture);
-    settings.mapping = make_mapping(r.mapping, kPictureSide, kPictureSide, r.pes, 0, "cyclic");
+    settings.mapping = make_mapping(r.mapping, kPictureSide, kPictureSide, r.pes, 0, r.fold);
     settings.accel.grid = r.grid;
-    settings.kernels = v.kernels(r.lanes, r.group_size);
+    settings.pixels_per_launch = r.pixels_per_launch;
+    settings.kernels = kernels_for(v, r);
     RingResult result = RingRenderer(session, scene_of(picture), settings).render();
     return {std::move(result.image), result.build_options};
 }
@@ -60,7 +79,7 @@ Rendered render_on_torus(const Verification& v, Session& session, const Renderin
     s.bounces = kPictureBounces;
     s.format = parse_format(picture.format);
     s.sampling = picture.sampling;
-    s.kernels = v.kernels(r.lanes, r.group_size);
+    s.kernels = kernels_for(v, r);
     TorusResult result = TorusRenderer(session, scene_of(picture), s).render();
     return {std::move(result.image), result.build_options};
 }
@@ -96,8 +115,8 @@ std::vector<std::string> remedies(const Verification& v, Session& session, const
     const std::optional<Image> plain = plain_image(v, session, picture);
     if (plain && pixel_hash(*plain) == known_picture(picture).hash)
         return {
-            "with one lane, groups of one and -cl-opt-disable this device makes the right image:\n"
-            "render with --lanes 1 --group 1, and tell the driver's makers",
+            "with one lane, groups of one and -cl-opt-disable this device makes the right image: render with\n"
+            "RAYA_BUILD_OPTIONS=-cl-opt-disable --lanes 1 --group 1, and tell the driver's makers",
             "a newer driver"};
     return {"are checks of \"number\" or \"geometry\" wrong too? then those first",
             "made plainly (one lane, -cl-opt-disable) the image is wrong as well: another driver, or another OpenCL\n"
@@ -129,7 +148,8 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
 }
 
 // Every kernel and every option at least once; renderings of equal build options follow each other, as they share a
-// build.
+// build. The quick ones take what kernels do without local memory or exact division along with what they are there for:
+// a build is most of a rendering's time.
 std::vector<Rendering> usual_renderings() {
     constexpr auto k2d = Links::kTorus2d;
     constexpr auto kRoot = Injection::kRoot;
@@ -138,16 +158,27 @@ std::vector<Rendering> usual_renderings() {
         {.picture = "glass fp32 filter", .quick = true, .mapping = "cyclic:5", .pes = 10},
         {.picture = "glass fp32 axes", .quick = true, .mapping = "rows", .pes = 16},
         {.picture = "glass fp32 diagonals", .quick = true, .mapping = "grid:4x4", .pes = 16},
+        {.picture = "glass fp32", .quick = true, .pes = 7, .fold = "block", .pixels_per_launch = 9},
+        {.picture = "glass fp32", .global_words = true},
+        {.picture = "glass fp32", .refined = true},
         {.picture = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
         {.picture = "glass fp32", .quick = true, .lanes = 4, .group_size = 32, .mapping = "random", .pes = 5},
+        {.picture = "ties fp32", .quick = true, .mapping = "blocks", .pes = 5, .global_words = true, .refined = true},
+        {.picture = "ties fp32"},
+        {.picture = "ties fp32", .grid = true},
+        {.picture = "ties fp32", .torus = true},
         {.picture = "polygons fp32", .quick = true, .mapping = "tiles:5x4", .pes = 7},
         {.picture = "polygons fp32", .quick = true, .grid = true},
+        {.picture = "polygons fp32", .grid = true, .global_words = true},
         {.picture = "polygons fp32", .quick = true, .torus = true},
+        {.picture = "polygons fp32", .torus = true, .global_words = true},
         {.picture = "polygons fp32", .quick = true, .torus = true, .nodes = {3, 2, 2}, .links = k2d, .inject = kRoot},
-        {.picture = "cones fp32", .quick = true, .mapping = "blocks", .pes = 5},
+        {.picture = "cones fp32", .mapping = "blocks", .pes = 5, .global_words = true},
         {.picture = "mirrors spa22", .quick = true, .mapping = "column", .pes = kPictureSide},
         {.picture = "mirrors spa22 filter", .quick = true, .mapping = "cyclic:16", .pes = kPictureSide},
-        {.picture = "cones e5m10", .quick = true},
+        {.picture = "cones e5m10", .quick = true, .refined = true},
+        {.picture = "mirrors spa22", .refined = true},
+        {.picture = "polygons spa22", .torus = true, .refined = true},
         {.picture = "mirrors spa22 axes", .mapping = "cyclic:3", .pes = 100},
         {.picture = "planes fp32 corners", .grid = true},
         {.picture = "spheres e8m12t"},

@@ -9,13 +9,14 @@
 #include "ring/bus.hpp"
 #include "verify/patterns.hpp"
 #include "verify/verify.hpp"
+#include "verify/words.hpp"
 
 namespace raya {
 namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-std::vector<std::string> compiler_remedies() {
+std::vector<std::string> remedies() {
     return {
         "the compiler is wrong about whole numbers or barriers, not about fp32: look for a switch of the driver that\n"
         "turns its optimiser off, and tell its makers",
@@ -38,7 +39,7 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
                    .expected = fmt::format("{0} = 0x{0:08x}", expected[at]),
                    .got = fmt::format("{0} = 0x{0:08x}", got[at]),
                    .options = options,
-                   .remedies = compiler_remedies()});
+                   .remedies = remedies()});
 }
 
 std::vector<std::string> plain_options() { return {"-cl-std=CL1.2"}; }
@@ -66,6 +67,7 @@ Verdict check_owners(const Verification& v, Session& session, std::uint32_t kind
     auto results = session.buffer<std::uint32_t>("owners", expected.size());
     session.write("mappings", mapping_buffer, mappings);
     session.write("pixels", pixel_buffer, pixels);
+    session.fill("owners", results, kPoison);
     auto kernel =
         program.kernel<const Buffer<raya_mapping>&, const Buffer<raya_pixel>&, cl_uint, Buffer<std::uint32_t>&>(
             "find_owners");
@@ -97,6 +99,7 @@ Verdict check_ways(const Verification& v, Session& session) {
     auto results = session.buffer<std::uint32_t>("ways", expected.size());
     session.write("toruses", torus_buffer, toruses);
     session.write("nodes", node_buffer, nodes);
+    session.fill("ways", results, kPoison);
     auto kernel =
         program.kernel<const Buffer<raya_torus>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<std::uint32_t>&>(
             "find_ways");
@@ -130,6 +133,7 @@ Verdict check_local_memory(const Verification& v, Session& session, std::uint32_
     auto to_buffer = session.buffer<std::uint32_t>("to", from.size());
     auto drawn_buffer = session.buffer<std::uint32_t>("drawn", from.size());
     session.write("from", from_buffer, from);
+    session.fill("to", to_buffer, kPoison);
     session.fill("drawn", drawn_buffer, 0);
     using Local = LocalMemory<std::uint32_t>;
     auto kernel = program.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, Local, Local, Buffer<std::uint32_t>&,

@@ -6,6 +6,7 @@
 
 #include "verify/known_answers.hpp"
 #include "verify/verify.hpp"
+#include "verify/words.hpp"
 
 namespace raya {
 namespace {
@@ -63,7 +64,7 @@ std::vector<std::uint32_t> run_rows(Session& session, const Program& program, co
     auto from = session.buffer<float>("operands", 3 * rows.count());
     auto to = session.buffer<std::uint32_t>("results", kVerifiedOperations.size() * rows.count());
     for (std::size_t k = 0; k < 3; ++k) session.write("operands", from, rows.operands[k], k * rows.count());
-    session.fill("results", to, 0xffffffffu);
+    session.fill("results", to, kPoison);
     auto kernel = program.kernel<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>("operations");
     session.launch("operations", kernel, rows.count() / lanes, 1, from, static_cast<cl_uint>(rows.count()), to);
     std::vector<std::uint32_t> results(to.size());
@@ -71,7 +72,8 @@ std::vector<std::uint32_t> run_rows(Session& session, const Program& program, co
     return results;
 }
 
-std::vector<std::string> remedies_for(const NumberFormat& format, const DeviceInfo& device) {
+std::vector<std::string> remedies_for(const NumberFormat& format, const DeviceInfo& device,
+                                      const std::vector<std::string>& of_lanes) {
     std::vector<std::string> all;
     if (format.is_fp32() && device.correctly_rounded_divide_sqrt)
         all.emplace_back(
@@ -80,14 +82,14 @@ std::vector<std::string> remedies_for(const NumberFormat& format, const DeviceIn
         all.emplace_back(
             "if only mul_add is wrong: the compiler contracts a b + c in spite of FP_CONTRACT OFF; look for an option "
             "of the driver that forbids it");
-    all.emplace_back("raya verify --full: are fewer lanes right? then give --lanes");
+    all.insert(all.end(), of_lanes.begin(), of_lanes.end());
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
     return all;
 }
 
-// All that is wrong in a line an operation, the first of it with bits.
+// All that is wrong in a line an operation, the first of it with bits. `known`: options and remedies of a fault.
 Verdict compare(const FormatAnswers& answers, const Rows& rows, const std::vector<std::uint32_t>& results,
-                const DeviceInfo& device, const std::string& options) {
+                const DeviceInfo& device, const Fault& known) {
     std::size_t wrong = 0, left_out = 0;
     std::string operations;
     Fault fault;
@@ -113,8 +115,8 @@ Verdict compare(const FormatAnswers& answers, const Rows& rows, const std::vecto
         const std::string denormals = left_out ? fmt::format(", {} denormal ones left out", left_out) : "";
         return passed(fmt::format("{} answers{}", answers.count() - left_out, denormals));
     }
-    fault.options = options;
-    fault.remedies = remedies_for(answers.format, device);
+    fault.options = known.options;
+    fault.remedies = known.remedies;
     return failed("wrong: " + operations, fault);
 }
 
@@ -129,7 +131,9 @@ void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t 
         options.push_back(fmt::format("-DRAYA_LANES={}", lanes));
         const Program program = v.build(session, "verify/operations.cl", options);
         const Rows rows = rows_of(answers);
-        return compare(answers, rows, run_rows(session, program, rows, lanes), device, program.options());
+        return compare(
+            answers, rows, run_rows(session, program, rows, lanes), device,
+            {.options = program.options(), .remedies = remedies_for(answers.format, device, v.lanes_remedies(lanes))});
     });
 }
 

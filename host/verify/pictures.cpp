@@ -71,7 +71,8 @@ const std::vector<Picture>& pictures() {
         {"polygons spa22", "polygons", "spa22"},
         {"cones e5m10", "cones", "e5m10"},
         {"spheres e8m12t", "spheres", "e8m12t"},
-        {"glass e8m21", "glass", "e8m21"}};
+        {"glass e8m21", "glass", "e8m21"},
+        {"ties fp32", "ties", "fp32"}};
     return all;
 }
 
@@ -82,7 +83,8 @@ const Picture& picture_named(const std::string& name) {
 }
 
 Scene scene_of(const Picture& picture) {
-    const std::string file = "scenes/" + picture.scene + ".nff";
+    const char* folder = picture.scene == "ties" ? "host/verify/" : "scenes/";
+    const std::string file = folder + picture.scene + ".nff";
     return parse_nff(embedded_files().at(file), file);
 }
 

@@ -16,7 +16,7 @@ namespace raya {
 /// All that decides the pixels. What decides nothing, machine, mapping, lanes and groups, is Rendering's.
 struct Picture {
     std::string name;   // "glass fp32 filter"
-    std::string scene;  // of scenes/, without folder and ending
+    std::string scene;  // of scenes/, or ties.nff beside this file, without folder and ending
     std::string format;
     AntialiasMethod antialias = AntialiasMethod::kNone;
     raya_u32 points = RAYA_POINTS_AXES;

@@ -4,19 +4,34 @@
 
 namespace raya {
 
-Verification::Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished)
-    : device_(device), info_(device_info(device)), settings_(settings), finished_(finished) {}
+namespace {
+
+void visit_layers(Verification& verification) {
+    verify_numbers(verification);
+    verify_geometry(verification);
+    verify_machines(verification);
+    verify_images(verification);
+}
+
+}  // namespace
+
+Verification::Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs)
+    : device_(device), info_(device_info(device)), settings_(settings), sink_(sink), runs_(runs) {}
 
 void Verification::check(const std::string& layer, const std::string& name,
                          const std::function<Verdict(Session&)>& body) {
-    if ((layer + " " + name).find(settings_.only) == std::string::npos) return;
+    const std::string full_name = layer + " " + name;
+    if (full_name.find(settings_.only) == std::string::npos) return;
+    names_.push_back(full_name);
+    if (!runs_ || names_.size() <= settings_.done) return;
+    if (sink_.started) sink_.started(layer, name);
     checks_.push_back(run_check(layer, name, [&] {
         Session session(device_);
         const Verdict verdict = body(session);
         session.finish();
         return verdict;
     }));
-    if (finished_) finished_(checks_.back());
+    if (sink_.finished) sink_.finished(checks_.back());
 }
 
 Program Verification::build(Session& session, const std::string& file, std::vector<std::string> options) const {
@@ -36,13 +51,22 @@ std::vector<std::uint32_t> Verification::lanes() const {
     return {own_lanes()};
 }
 
-std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished) {
-    Verification verification(device, settings, finished);
-    verify_numbers(verification);
-    verify_geometry(verification);
-    verify_machines(verification);
-    verify_images(verification);
+std::vector<std::string> Verification::lanes_remedies(std::uint32_t lanes) const {
+    if (lanes <= 1) return {};
+    if (full() && settings_.lanes == 0) return {"are checks with fewer lanes right? then give --lanes"};
+    return {"raya verify --lanes 1: are fewer lanes right? then give --lanes"};
+}
+
+std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
+    Verification verification(device, settings, sink);
+    visit_layers(verification);
     return verification.take_checks();
+}
+
+std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings) {
+    Verification verification(device, settings, {}, false);
+    visit_layers(verification);
+    return verification.take_names();
 }
 
 }  // namespace raya

@@ -24,21 +24,29 @@ struct VerifySettings {
     std::filesystem::path kernel_dir{};  // kernels from disk in place of the program's own
     std::string only{};                  // checks with this in "LAYER NAME" alone; empty: all
     std::uint32_t lanes = 0;             // this width alone, 1, 4, 8 or 16; 0: the device's own, with kFull all
+    std::size_t done = 0;                // so many checks, the first ones, are left out
 };
 
-using CheckSink = std::function<void(const Check&)>;
+/// Is told of every check as it begins, by layer and name, and as it ends.
+struct CheckSink {
+    std::function<void(const std::string&, const std::string&)> started{};
+    std::function<void(const Check&)> finished{};
+};
 
 /// Checks `device` from the number layer to the images, layer by layer, so that the first failure is nearest to the
-/// fault. `finished` is told of every check as it ends. DeviceError if the device says nothing of itself.
-std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished = {});
+/// fault. DeviceError if the device says nothing of itself.
+std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
+
+/// "LAYER NAME" of every check that verify() would run, in their order.
+std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
 
 /// What the layers' checks have in common: the device, the depth, and how a check is run.
 class Verification {
   public:
-    Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& finished);
+    /// `runs`: checks are run; else they are named alone.
+    Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs = true);
 
     const DeviceInfo& device() const { return info_; }
-    const Breakage& breakage() const { return settings_.breakage; }
     bool full() const { return settings_.depth == Depth::kFull; }
 
     /// Runs one check in a session of its own: a failed command may leave a context of no use.
@@ -56,14 +64,20 @@ class Verification {
     /// All widths of lanes to try.
     std::vector<std::uint32_t> lanes() const;
 
+    /// What to try where a width of lanes may be at fault; nothing where that has been tried.
+    std::vector<std::string> lanes_remedies(std::uint32_t lanes) const;
+
     std::vector<Check> take_checks() { return std::move(checks_); }
+    std::vector<std::string> take_names() { return std::move(names_); }
 
   private:
     cl::Device device_;
     DeviceInfo info_;
     VerifySettings settings_;
-    CheckSink finished_;
+    CheckSink sink_;
+    bool runs_;
     std::vector<Check> checks_;
+    std::vector<std::string> names_;  // of those and of settings_.done before them
 };
 
 // The layers, in the order in which they rest on each other.

@@ -1,4 +1,4 @@
-// 32-bit words as the files of known answers and pictures have them.
+// 32-bit words: as the files of known answers and pictures have them, and one that is never an answer.
 #pragma once
 #include <fmt/format.h>
 
@@ -7,6 +7,10 @@
 #include <string>
 
 namespace raya {
+
+/// What results hold before a kernel runs, so that one that does nothing does not find the right ones there, left by
+/// another: the answer of no check.
+inline constexpr std::uint32_t kPoison = 0xdeadbeef;
 
 /// 8 hexadecimal digits of which zeros at the end are left out: "3f8" is 0x3f800000. std::logic_error for anything
 /// else.

@@ -29,10 +29,7 @@ void hits_by_grid(__global const uint* restrict job,
                   __global uint* restrict distances)
 {
     const uint first = get_group_id(0) * RAYA_LANES;
-    ray r = load_ray(rays, first);
-#ifdef RAYA_BREAK_WALK
-    r.limit = fmin(r.limit, num_all(15.5f));
-#endif
+    const ray r = load_ray(rays, first);
     tree t;
     ray_pool pool;
     clear_tree(&t);

@@ -1,27 +1,41 @@
-// A device that fails on demand: preloaded into raya (LD_PRELOAD), it lets one call of OpenCL return an error.
-//   RAYA_FAULT="clCreateBuffer 3 -4"    the third clCreateBuffer, and all after it, return -4 and do nothing
-//   RAYA_FAULT="new 1000000 0"          the host has no memory for objects of 1,000,000 bytes or more
-// No driver can be made to run out of memory or to lose its device at a chosen moment.
+// A device that fails on demand: preloaded into raya (LD_PRELOAD), it lets one call of OpenCL do something else.
+//   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer, and all after it, return -4 and do nothing
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer says that it is done, and is not;
+//                                             clEnqueueCopyBufferRect likewise
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third, and all after it, end the program by SIGSEGV
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   or with exit code 1
+//   RAYA_FAULT="clFinish 1 slow"              the first, and all after it, take two seconds and a half longer
+//   RAYA_FAULT="clGetDeviceInfo 4100 8"       asked for 0x1004 = CL_DEVICE_MAX_WORK_GROUP_SIZE, the device says 8
+//   RAYA_FAULT="new 1000000 0"                the host has no memory for objects of 1,000,000 bytes or more
+// No driver can be made to run out of memory, to lose its device or to forget a copy at a chosen moment.
 #include <CL/cl.h>
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <sstream>
 #include <string>
+#include <thread>
 
 namespace {
 
 struct Fault {
     std::string call;
-    int at = 0;  // 1: the first call; of new: bytes
+    int at = 0;        // 1: the first call; of new: bytes
+    std::string what;  // "lost", "crash", "exit", "slow", or empty
     cl_int error = CL_SUCCESS;
 
     Fault() {
         const char* text = std::getenv("RAYA_FAULT");
-        std::istringstream(text != nullptr ? text : "") >> call >> at >> error;
+        std::istringstream(text != nullptr ? text : "") >> call >> at >> what;
+        error = std::atoi(what.c_str());
+        if (error != CL_SUCCESS) what.clear();
     }
 };
 
@@ -34,7 +48,18 @@ const Fault& wanted() {
 cl_int fault_of(const char* call) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
-    return fault.call == call && ++calls >= fault.at ? fault.error : CL_SUCCESS;
+    if (fault.call != call || fault.what == "lost" || ++calls < fault.at) return CL_SUCCESS;
+    if (fault.what == "crash") std::raise(SIGSEGV);
+    if (fault.what == "exit") std::_Exit(1);
+    if (fault.what == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    return fault.error;
+}
+
+/// Whether this copy is not to be done.
+bool is_lost(const char* call) {
+    const Fault& fault = wanted();
+    static std::atomic<int> calls{0};
+    return fault.what == "lost" && fault.call == call && ++calls % fault.at == 0;
 }
 
 template <class Function>
@@ -58,6 +83,14 @@ auto object(const char* name, cl_int* error, Args... args) -> decltype(real<Func
     return nullptr;
 }
 
+/// In place of a copy: a command that is done in the end, with its times, and that moves a byte to nowhere.
+cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, const cl_event* wait_list,
+                            cl_event* event) {
+    static char nowhere;
+    return real<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(queue, from, CL_FALSE, 0, 1, &nowhere, waits,
+                                                                      wait_list, event);
+}
+
 }  // namespace
 
 // A sanitizer has an allocator of its own.
@@ -74,6 +107,10 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 #endif
 
 extern "C" {
+
+cl_int CL_API_CALL clGetPlatformIDs(cl_uint most, cl_platform_id* platforms, cl_uint* count) {
+    return command<decltype(clGetPlatformIDs)>("clGetPlatformIDs", most, platforms, count);
+}
 
 cl_context CL_API_CALL clCreateContext(const cl_context_properties* properties, cl_uint count,
                                        const cl_device_id* devices,
@@ -98,6 +135,33 @@ cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl
                                        cl_event* event) {
     return command<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer", queue, buffer, blocking, offset, size, to,
                                                   waits, wait_list, event);
+}
+
+cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
+                                       size_t to_offset, size_t size, cl_uint waits, const cl_event* wait_list,
+                                       cl_event* event) {
+    if (is_lost("clEnqueueCopyBuffer")) return command_without_copy(queue, from, waits, wait_list, event);
+    return command<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer", queue, from, to, from_offset, to_offset, size,
+                                                  waits, wait_list, event);
+}
+
+cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, cl_mem to, const size_t* from_origin,
+                                           const size_t* to_origin, const size_t* region, size_t from_row,
+                                           size_t from_slice, size_t to_row, size_t to_slice, cl_uint waits,
+                                           const cl_event* wait_list, cl_event* event) {
+    if (is_lost("clEnqueueCopyBufferRect")) return command_without_copy(queue, from, waits, wait_list, event);
+    return command<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin,
+                                                      to_origin, region, from_row, from_slice, to_row, to_slice, waits,
+                                                      wait_list, event);
+}
+
+cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* needed) {
+    const cl_int error = real<decltype(clGetDeviceInfo)>("clGetDeviceInfo")(device, what, size, value, needed);
+    const Fault& fault = wanted();
+    if (fault.call != "clGetDeviceInfo" || static_cast<int>(what) != fault.at || value == nullptr) return error;
+    const size_t answer = static_cast<size_t>(fault.error);
+    std::memcpy(value, &answer, std::min(size, sizeof answer));
+    return error;
 }
 
 cl_int CL_API_CALL clFinish(cl_command_queue queue) { return command<decltype(clFinish)>("clFinish", queue); }

@@ -35,10 +35,11 @@ struct Outcome {
 /// What a run finds around it.
 struct Surroundings {
     std::vector<std::pair<std::string, std::string>> variables{};  // set, on top of this process's own
-    bool as_nobody = false;   // if this process is root's, run as a user whom permissions bind
-    rlim_t largest_file = 0;  // bytes that a file may grow to, 0: any; a longer one fails as a full disk does
-    int signal = 0;           // sent to the program, unless it has ended before
-    int signal_after_ms = 0;  // after it has begun to handle that signal
+    bool as_nobody = false;    // if this process is root's, run as a user whom permissions bind
+    rlim_t largest_file = 0;   // bytes that a file may grow to, 0: any; a longer one fails as a full disk does
+    std::string error_file{};  // what stderr goes to, so that it is not seen in the outcome; empty: to be seen
+    int signal = 0;            // sent to the program, unless it has ended before
+    int signal_after_ms = 0;   // after it has begun to handle that signal
 };
 
 namespace run_program_detail {
@@ -77,6 +78,13 @@ inline std::vector<std::string> environment(const Surroundings& around) {
     }
     for (const auto& [name, value] : around.variables) all.push_back(name + "=" + value);
     return all;
+}
+
+/// Puts `file`, a terminal perhaps, in the place of stderr.
+inline void open_error_file(const std::string& file) {
+    if (file.empty()) return;
+    const int opened = ::open(file.c_str(), O_WRONLY | O_NOCTTY);
+    if (opened < 0 || ::dup2(opened, STDERR_FILENO) < 0) ::_exit(126);
 }
 
 inline void leave_root() {
@@ -136,6 +144,7 @@ inline Outcome run_raya(std::vector<std::string> arguments, const Surroundings& 
         ::dup2(::fileno(input.get()), STDIN_FILENO);
         ::dup2(::fileno(out.get()), STDOUT_FILENO);
         ::dup2(::fileno(err.get()), STDERR_FILENO);
+        detail::open_error_file(around.error_file);
         detail::limit_files(around.largest_file);
         if (around.as_nobody) detail::leave_root();
         ::fexecve(program, argv.data(), envp.data());

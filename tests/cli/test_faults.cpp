@@ -5,23 +5,11 @@
 #include <fstream>
 #include <utility>
 
+#include "cli/failing_device.hpp"
 #include "cli/refusals.hpp"
 
 namespace raya {
 namespace {
-
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
-/// A device that fails as `fault` says, see cl_faults.cpp.
-Surroundings failing_device(const std::string& fault) {
-    return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
-                          {"RAYA_FAULT", fault},
-                          {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
-}
 
 Words small_render(const ScratchFolder& outputs, const Words& more = {}) {
     Words options = {"--size", "16", "--lanes", "1", "--quiet"};

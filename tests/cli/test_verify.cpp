@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cli/run_program.hpp"
-#include "report/scratch_folder.hpp"
+#include "cli/failing_device.hpp"
+#include "cli/refusals.hpp"
 
 namespace raya {
 
@@ -18,18 +18,18 @@ TEST_CASE("verify prints a line for each check and closes with the counts", "[cl
 TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = (scratch / "report.json").string();
-    const Outcome run = run_raya({"verify", "--only", "machine", "--break", "rotation", "--report", file});
+    const Outcome run = run_raya({"verify", "--only", "machine", "--break", "mapping", "--report", file});
     INFO(run.told());
     CHECK(run.code == 4);
-    CHECK_THAT(run.out, Catch::Contains("FAIL  machine   ring: rotations of 7 PEs") && Catch::Contains("expected") &&
+    CHECK_THAT(run.out, Catch::Contains("FAIL  machine   mapping: blocks") && Catch::Contains("expected") &&
                             Catch::Contains("try"));
-    CHECK_THAT(run.out, Catch::Contains("3 failed"));
+    CHECK_THAT(run.out, Catch::Contains("2 failed"));
     const auto report = nlohmann::json::parse(file_contents(file));
     CHECK(report["depth"] == "quick");
     const auto& device = report["devices"][0];
     CHECK(device["right"] == false);
-    CHECK(device["failed"] == 3);
-    CHECK(device["passed"].get<int>() + 3 + device["skipped"].get<int>() == int(device["checks"].size()));
+    CHECK(device["failed"] == 2);
+    CHECK(device["passed"].get<int>() + 2 + device["skipped"].get<int>() == int(device["checks"].size()));
     int failures = 0;
     for (const auto& check : device["checks"]) {
         for (const char* key : {"layer", "name", "status", "seconds", "told"}) CHECK(check.contains(key));
@@ -37,14 +37,28 @@ TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli
         ++failures;
         for (const char* key : {"where", "expected", "got"}) CHECK(check[key] != "");
     }
-    CHECK(failures == 3);
+    CHECK(failures == 2);
 }
 
-TEST_CASE("verify of nothing is no success", "[cli][verify]") {
-    const Outcome run = run_raya({"verify", "--only", "no such check"});
-    INFO(run.told());
-    CHECK(run.code == 4);
-    CHECK_THAT(run.out, Catch::Contains(": 0 checks passed, 0 failed, 0 skipped"));
+TEST_CASE("verify of nothing says what there is", "[cli][verify]") {
+    const ScratchFolder scratch;
+    check_refused(scratch, {"verify", "--only", "no such check", "--report", scratch / "report.json"}, 2,
+                  {"--only \"no such check\": no check of", "the layers are number, geometry, machine and image",
+                   "\n  number fp32, ", "\n  image glass fp32: ", "--full has more"});
+}
+
+TEST_CASE("verify of what the device cannot do is skipped, and no success", "[cli][verify]") {
+    const Surroundings small_groups = failing_device("clGetDeviceInfo 4100 8");
+    const Outcome some = run_raya({"verify", "--only", "machine local memory"}, small_groups);
+    INFO(some.told());
+    CHECK(some.code == 0);
+    CHECK_THAT(some.out, Catch::Contains("SKIP  machine   local memory and barriers, 32 work-items") &&
+                             Catch::Contains("32 work-items wanted, the device has 8 in a group") &&
+                             Catch::Contains(": 1 checks passed, 0 failed, 1 skipped"));
+    const Outcome none = run_raya({"verify", "--only", "32 work-items"}, small_groups);
+    INFO(none.told());
+    CHECK(none.code == 4);
+    CHECK_THAT(none.out, Catch::Contains(": 0 checks passed, 0 failed, 1 skipped"));
 }
 
 TEST_CASE("verify takes every usable device in turn", "[cli][verify]") {

@@ -1,10 +1,14 @@
 // verify fails when it must: each fault, put in on purpose, is seen by the checks that it concerns and by no others.
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "error.hpp"
+#include "report/scratch_folder.hpp"
 #include "verify/verify.hpp"
 
 namespace raya {
@@ -82,20 +86,61 @@ TEST_CASE("a walk that ends too soon is seen by hits that lie farther away", "[v
     CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_grid"));
 }
 
-TEST_CASE("faults of whole numbers, barriers and copies are seen where they are", "[verify][breakage]") {
+TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify][breakage]") {
+    struct Row {
+        const char *breakage, *only;
+        Names wrong;
+    };
+    const Row rows[] = {
+        {"rounding", "image cones e5m10", {"cones e5m10: cyclic:8 on 20, division refined"}},
+        {"contraction", "image glass fp32: cyclic:8 on 20", {"glass fp32: cyclic:8 on 20"}},
+        {"division", "image ties fp32: blocks on 5, global words, division refined", {}},
+        {"division", "image glass fp32: cyclic:8 on 7", {"glass fp32: cyclic:8 on 7, block fold, 9 pixels a launch"}},
+        {"tie", "image ties", {"ties fp32: blocks on 5, global words, division refined"}},
+        {"walk", "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
+        {"walk", "image polygons fp32: torus3d 2x2x2", {"polygons fp32: torus3d 2x2x2"}}};
+    for (const Row& row : rows) {
+        CAPTURE(row.breakage, row.only);
+        const auto checks = run(row.breakage, row.only);
+        CHECK(checks.size() == 1);
+        CHECK(failures(checks) == row.wrong);
+    }
+}
+
+TEST_CASE("a kernel that does nothing finds no right answers", "[verify][breakage]") {
+    struct Row {
+        const char *file, *kernel, *only;
+        std::size_t wrong;
+    };
+    const Row rows[] = {
+        {"hits.cl", "hits_of_all", ", fp32", 5},         {"hits.cl", "hits_by_grid", ", fp32", 5},
+        {"machine.cl", "find_owners", "mapping", 7},     {"machine.cl", "find_ways", "ways", 1},
+        {"machine.cl", "turn_round", "local memory", 2}, {"operations.cl", "operations", "number fp32", 1}};
+    for (const Row& row : rows) {
+        CAPTURE(row.kernel);
+        const ScratchFolder scratch;
+        const std::filesystem::path kernels = scratch / "kernels", file = kernels / "verify" / row.file;
+        std::filesystem::copy(RAYA_SOURCE_DIR "/kernels", kernels, std::filesystem::copy_options::recursive);
+        std::stringstream whole;
+        whole << std::ifstream(file).rdbuf();
+        std::string text = whole.str();
+        const std::size_t body = text.find("\n{", text.find(std::string("void ") + row.kernel + "("));
+        REQUIRE(body != std::string::npos);
+        std::ofstream(file) << text.insert(body + 2, " return;");
+        const auto checks = verify(choose_device(""), {.kernel_dir = kernels, .only = row.only});
+        CHECK(failures(checks).size() == row.wrong);
+        CHECK(checks.size() == row.wrong);
+    }
+}
+
+TEST_CASE("faults of whole numbers and barriers are seen where they are", "[verify][breakage]") {
     struct Row {
         const char* breakage;
         Names wrong;
     };
-    const Row rows[] = {
-        {"", {}},
-        {"mapping", {"mapping: cyclic, block fold", "mapping: blocks"}},
-        {"barrier", {"local memory and barriers, 32 work-items"}},
-        {"copy", {"copies of blocks"}},
-        {"rotation", {"ring: rotations of 2 PEs", "ring: rotations of 7 PEs", "ring: rotations of 256 PEs"}},
-        {"exchange",
-         {"torus3d: exchange of whole sides", "torus3d: exchange of single boxes", "torus2d: exchange of whole sides",
-          "torus2d: exchange of single boxes"}}};
+    const Row rows[] = {{"", {}},
+                        {"mapping", {"mapping: cyclic, block fold", "mapping: blocks"}},
+                        {"barrier", {"local memory and barriers, 32 work-items"}}};
     for (const Row& row : rows) {
         CAPTURE(row.breakage);
         CHECK(failures(run(row.breakage, "machine")) == row.wrong);

@@ -1,0 +1,22 @@
+// What cl_faults.cpp makes of a device, around a run of raya.
+#pragma once
+#include <string>
+
+#include "cli/run_program.hpp"
+
+namespace raya {
+
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+/// A device that fails as `fault` says, see cl_faults.cpp.
+inline Surroundings failing_device(const std::string& fault) {
+    return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
+                          {"RAYA_FAULT", fault},
+                          {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
+}
+
+}  // namespace raya

@@ -1,0 +1,108 @@
+// raya verify's processes: what a driver that ends one leaves behind, Ctrl-C, and the line that says what runs.
+#include <fcntl.h>
+
+#include <algorithm>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "cli/failing_device.hpp"
+#include "cli/refusals.hpp"
+
+namespace raya {
+namespace {
+namespace fs = std::filesystem;
+
+TEST_CASE("a driver that crashes fails the check that ran, and the others go on", "[cli][verify]") {
+    struct Row {
+        const char *fault, *ending;
+    };
+    for (const Row& row : {Row{"clEnqueueCopyBufferRect 1 crash", "ended by signal 11 (SIGSEGV)"},
+                           Row{"clEnqueueCopyBufferRect 1 exit", "ended by exit code 1"}}) {
+        const ScratchFolder scratch;
+        const std::string file = scratch / "report.json";
+        const Outcome run = run_raya({"verify", "--only", "machine", "--report", file}, failing_device(row.fault));
+        INFO(run.told());
+        CHECK(run.code == 4);
+        for (const char* part : {"PASS  machine   ways through the torus", "FAIL  machine   copies of blocks",
+                                 "PASS  machine   ring: rotations of 256 PEs", "where", "try"})
+            CHECK_THAT(run.out, Catch::Contains(part));
+        CHECK_THAT(run.out,
+                   Catch::Contains(row.ending) &&
+                       Catch::Matches("(.|\n)*: [0-9]+ checks passed, [0-9]+ failed, 0 skipped in [0-9.]+ s\n"));
+        const auto device = nlohmann::json::parse(file_contents(file))["devices"][0];
+        CHECK(device["failed"].get<int>() >= 3);  // copies of blocks, and links that are cleared by rows
+        CHECK(device["passed"].get<int>() >= 12);
+        for (const auto& check : device["checks"])
+            if (check["status"] == "FAIL") CHECK((check["told"] == row.ending && check["where"] != ""));
+    }
+}
+
+TEST_CASE("a driver that crashes before any check is trouble with the device", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const Surroundings crash = failing_device("clGetPlatformIDs 1 crash");
+    check_refused(scratch, {"verify", "--report", scratch / "report.json"}, 3,
+                  {"looking for devices", "signal 11 (SIGSEGV)", "remedy"}, crash);
+}
+
+/// Whether a process has this among its arguments.
+bool is_running_with(const std::string& argument) {
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+        std::ifstream file(entry.path() / "cmdline", std::ios::binary);
+        const std::string arguments{std::istreambuf_iterator<char>(file), {}};
+        if (contains(arguments, argument)) return true;
+    }
+    return false;
+}
+
+TEST_CASE("Ctrl-C ends verify and the process of its checks at once", "[cli][verify]") {
+    using namespace std::chrono;
+    const ScratchFolder kernels, outputs;
+    fs::copy(RAYA_SOURCE_DIR "/kernels", kernels / "kernels", fs::copy_options::recursive);
+    const Words command = {
+        "verify", "--full", "--kernel-dir", kernels / "kernels", "--report", outputs / "report.json"};
+    for (const auto& [signal, after_ms] : {std::pair(SIGINT, 0), std::pair(SIGINT, 1500), std::pair(SIGTERM, 1500)}) {
+        CAPTURE(signal, after_ms);
+        const Outcome run = run_raya(command, {.signal = signal, .signal_after_ms = after_ms});
+        INFO(run.told());
+        CHECK(run.code == 128 + signal);
+        CHECK_THAT(run.err, Catch::Contains("raya: interrupted\n"));
+        CHECK(outputs.entries() == 0);
+        const auto late = steady_clock::now() + seconds(5);
+        while (is_running_with(kernels.path()) && steady_clock::now() < late)
+            std::this_thread::sleep_for(milliseconds(20));
+        CHECK_FALSE(is_running_with(kernels.path()));
+    }
+}
+
+/// What raya prints on a terminal that is its stderr.
+std::string told_on_terminal(const Words& arguments, Surroundings around) {
+    const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) return "no terminal";
+    const std::string name = ::ptsname(terminal);
+    const int other_end = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // so that the terminal lives on
+    around.error_file = name;
+    run_raya(arguments, around);
+    ::fcntl(terminal, F_SETFL, O_NONBLOCK);
+    std::string text;
+    std::array<char, 4096> block{};
+    for (ssize_t count; (count = ::read(terminal, block.data(), block.size())) > 0;)
+        text.append(block.data(), static_cast<std::size_t>(count));
+    ::close(other_end);
+    ::close(terminal);
+    return text;
+}
+
+TEST_CASE("a check that takes long is named on a terminal, and nowhere else", "[cli][verify]") {
+    const Words one_check = {"verify", "--only", "machine bus"};
+    const Surroundings slow = failing_device("clFinish 1 slow");
+    CHECK_THAT(
+        told_on_terminal(one_check, slow),
+        Catch::Contains("\r\033[Krunning machine bus: broadcast and gather ... 1 s") && Catch::EndsWith("\r\033[K"));
+    const Outcome run = run_raya(one_check, slow);
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK(run.err.empty());
+}
+
+}  // namespace
+}  // namespace raya

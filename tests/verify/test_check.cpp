@@ -1,0 +1,77 @@
+// One check: what becomes of exceptions, what is tried after them, and its text as JSON and back.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "error.hpp"
+#include "verify/verify.hpp"
+
+namespace raya {
+namespace {
+
+std::string text_of(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + '\n';
+    return text;
+}
+
+// The remedies of a check that throws this.
+template <class Error>
+std::string remedies_after(const std::string& message) {
+    const Check check = run_check("layer", "name", [&]() -> Verdict { throw Error(message); });
+    CHECK(check.verdict.outcome == Outcome::kFail);
+    return text_of(check.verdict.fault.remedies);
+}
+
+}  // namespace
+
+TEST_CASE("a check that throws has failed, with what fits the reason", "[verify]") {
+    using Catch::Contains;
+    CHECK_THAT(remedies_after<DeviceError>("building program 'x.cl': clBuildProgram failed with "
+                                           "CL_BUILD_PROGRAM_FAILURE (-11)\n  options: -w"),
+               Contains("build log") && Contains("-cl-opt-disable"));
+    CHECK_THAT(remedies_after<DeviceError>("allocating buffer 'x' (8 bytes): CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)"),
+               Contains("memory is short") && !Contains("build log"));
+    CHECK_THAT(remedies_after<DeviceError>("'x': clFinish failed with CL_DEVICE_NOT_AVAILABLE (-2)"),
+               Contains("the device was lost") && !Contains("memory"));
+    CHECK_THAT(remedies_after<std::logic_error>("another reason"), Contains("raya devices"));
+}
+
+TEST_CASE("what is tried already is no remedy", "[verify]") {
+    using Catch::Contains;
+    ::unsetenv("RAYA_BUILD_OPTIONS");
+    CHECK_THAT(text_of(compiler_remedies()), Contains("-cl-opt-disable"));
+    ::setenv("RAYA_BUILD_OPTIONS", "-cl-opt-disable", 1);
+    CHECK_THAT(text_of(compiler_remedies()), !Contains("-cl-opt-disable"));
+    ::unsetenv("RAYA_BUILD_OPTIONS");
+    const auto remedies = [](Depth depth, std::uint32_t given, std::uint32_t lanes) {
+        const VerifySettings settings{.depth = depth, .lanes = given};
+        return text_of(Verification(choose_device(""), settings, {}).lanes_remedies(lanes));
+    };
+    CHECK_THAT(remedies(Depth::kQuick, 0, 8), Contains("raya verify --lanes 1"));
+    CHECK_THAT(remedies(Depth::kFull, 0, 8), !Contains("--full") && Contains("give --lanes"));
+    CHECK_THAT(remedies(Depth::kFull, 8, 8), Contains("--lanes 1"));
+    CHECK(remedies(Depth::kQuick, 1, 1).empty());
+    CHECK(remedies(Depth::kFull, 0, 1).empty());
+}
+
+TEST_CASE("checks come back from their JSON", "[verify]") {
+    const Fault fault{.where = "there", .expected = "1", .got = "2", .options = "-w", .remedies = {"this", "that"}};
+    for (const Verdict& verdict : {passed("3 answers"), skipped("no reason"), failed("wrong", fault)}) {
+        const Check check{"layer", "name", 1.5, verdict};
+        CHECK(to_json(check_of(to_json(check))) == to_json(check));
+        CHECK(check_lines(check_of(to_json(check))) == check_lines(check));
+    }
+}
+
+TEST_CASE("checks that are done already are left out", "[verify]") {
+    const cl::Device device = choose_device("");
+    const std::vector<std::string> names = check_names(device, {.only = "rotations"});
+    REQUIRE(names.size() == 3);
+    const std::vector<Check> rest = verify(device, {.only = "rotations", .done = 1});
+    REQUIRE(rest.size() == 2);
+    for (std::size_t i = 0; i < rest.size(); ++i) CHECK(rest[i].layer + " " + rest[i].name == names[i + 1]);
+}
+
+}  // namespace raya
