@@ -1,4 +1,6 @@
 // What can go wrong around a render once it has begun: a clear message, the right exit code, and no file, whole or not.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -50,6 +52,28 @@ TEST_CASE("a device that disappears in the middle of a render ends with the comm
                   {"render", scene_file("planes"), "-o", outputs / "x.png", "--size", "16", "--lanes", "1", "--machine",
                    "torus", "--nodes", "2x1x1"},
                   3, message, failing_device("clEnqueueNDRangeKernel 9 -2"));
+}
+
+TEST_CASE("a device that lacks memory for the peak loses the roofline, not the render", "[cli]") {
+    // The n-th buffer cannot be had: first those of the render, which fails, then those of the peak, which does not.
+    int lost_renders = 0, lost_peaks = 0;
+    for (int n = 1; n < 60; ++n) {
+        const ScratchFolder outputs;
+        const Outcome run =
+            run_raya(small_render(outputs, {"--profile"}), failing_device(fmt::format("clCreateBuffer {} -4", n)));
+        CAPTURE(n, run.told());
+        lost_renders += run.code == 3;
+        if (run.code == 3) continue;
+        REQUIRE(run.code == 0);
+        CHECK(outputs.entries() == 3);
+        const bool lost = run.out.find("no roofline: ") != std::string::npos;
+        CHECK(lost == (run.out.find("% of roof") == std::string::npos));
+        if (!lost) break;  // no buffer is left that could be lacking
+        ++lost_peaks;
+        CHECK_THAT(run.out, Catch::Contains("CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+    }
+    CHECK(lost_renders >= 3);
+    CHECK(lost_peaks >= 3);
 }
 
 TEST_CASE("a host that runs out of memory ends with the remedy", "[cli]") {
