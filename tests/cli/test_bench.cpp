@@ -96,7 +96,7 @@ TEST_CASE("bench --ways times whole renders with and without a grid and on the t
     const std::string base = folder / "ways.json";
     const Outcome run =
         run_raya({"bench", RAYA_SOURCE_DIR "/scenes/mirrors.nff", "--ways", "grid,torus,none", "--machine", "grande",
-                  "--size", "40x30", "--format", "fp32", "--samples", "1", "--report", base});
+                  "--size", "40x30", "--format", "fp32", "--lanes", "4", "--samples", "1", "--report", base});
     INFO(run.told());
     REQUIRE(run.code == 0);
     const nlohmann::json rows = json_of(base)["rows"];
