@@ -1,0 +1,63 @@
+#include "torus/torus_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstring>
+
+#include "error.hpp"
+#include "machine/t805.hpp"
+#include "torus/topology.hpp"
+#include "torus/windows.hpp"
+
+namespace raya {
+
+JobSettings job_settings(const TorusSettings& s) {
+    raya_mapping pixels{};  // rows of the image in turn: the job's header says how large it is
+    pixels.width = s.width;
+    pixels.height = s.height;
+    pixels.pes = 1;
+    return {pixels, s.sampling, s.bounces, t805_cycles(), s.format};
+}
+
+TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        if (s.voxels[axis] > RAYA_MOST_PLACES)
+            throw UserError(
+                fmt::format("--voxels {}: at most {} along an axis", sides_text(s.voxels), RAYA_MOST_PLACES));
+    if (scene.lights.size() > RAYA_MOST_LIGHTS)
+        throw UserError(fmt::format("{}: {} lights; packets of the torus name at most {}", scene.name,
+                                    scene.lights.size(), RAYA_MOST_LIGHTS));
+    if (!s.kernels.lanes) s.kernels.lanes = default_lanes(device);
+    if (!s.kernels.group_size) s.kernels.group_size = default_group_size(device);
+    check_kernel_options({.lanes = s.kernels.lanes, .group_size = s.kernels.group_size, .bounces = s.bounces}, device);
+    return s;
+}
+
+std::uint64_t pixels_of(const TorusSettings& s) {
+    const std::uint64_t all = std::uint64_t{s.width} * s.height;
+    return s.pixels.first < all ? (all - s.pixels.first - 1) / s.pixels.stride + 1 : 0;
+}
+
+KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job, const Scene& scene) {
+    return {.lanes = s.kernels.lanes,
+            .group_size = s.kernels.group_size,
+            .bounces = s.bounces,
+            .format = s.format,
+            .words_local = true,
+            .filter = s.kernels.filter && !scene.spheres.empty() && sphere_filter_holds(s.format, scene_extent(scene)),
+            .polygons = job.has_polygons,
+            .patches = job.has_patches,
+            .cones = job.has_cones};
+}
+
+void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob& job, const Partition& partition) {
+    raya_job header;
+    std::memcpy(&header, job.words.data(), sizeof header);
+    const std::vector<PixelWindow> windows = pixel_windows(header, partition.grid, s.torus, s.format);
+    for (std::size_t node = 0; node < windows.size(); ++node)
+        std::memcpy(&memories.words[memories.starts[node] + offsetof(raya_node, window) / 4], &windows[node],
+                    sizeof windows[node]);
+}
+
+}  // namespace raya

@@ -1,0 +1,28 @@
+// How a render on the torus is set up: what is chosen where the user leaves the choice.
+#pragma once
+#include <cstdint>
+
+#include "cl/device.hpp"
+#include "kernels/kernel_options.hpp"
+#include "scene/packer.hpp"
+#include "torus/node_memory.hpp"
+#include "torus/torus_renderer.hpp"
+
+namespace raya {
+
+JobSettings job_settings(const TorusSettings& settings);
+
+/// The settings with lanes and group size chosen. UserError, before anything is packed or taken, if packets cannot name
+/// the voxels or lights, or the kernels cannot be built with them.
+TorusSettings checked(TorusSettings settings, const Scene& scene, const DeviceInfo& device);
+
+/// How many pixels are traced.
+std::uint64_t pixels_of(const TorusSettings& settings);
+
+KernelOptions kernel_options(const TorusSettings& settings, const PackedJob& job, const Scene& scene);
+
+/// Tells each node's header which pixels to look at.
+void set_windows(NodeMemories& memories, const TorusSettings& settings, const PackedJob& job,
+                 const Partition& partition);
+
+}  // namespace raya
