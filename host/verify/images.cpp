@@ -163,7 +163,7 @@ std::vector<Rendering> usual_renderings() {
         {.picture = "glass fp32", .global_words = true},
         {.picture = "glass fp32", .refined = true},
         {.picture = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
-        {.picture = "glass fp32", .quick = true, .lanes = 4, .group_size = 32, .mapping = "random", .pes = 5},
+        {.picture = "glass fp32", .lanes = 4, .group_size = 32, .mapping = "random", .pes = 5},
         {.picture = "ties fp32", .quick = true, .mapping = "blocks", .pes = 5, .global_words = true, .refined = true},
         {.picture = "ties fp32"},
         {.picture = "ties fp32", .grid = true},
