@@ -57,8 +57,7 @@ void print_rows(const std::vector<BenchRow>& rows) {
     fmt::print("{}", text_table(table));
     fmt::print(
         "speed-up: over the first row of the same format; slow-down: against the first row of the same kernel and "
-        "lanes "
-        "(medians);\n"
+        "lanes (medians);\n"
         "pixels: hash of the image, checked to be the same in all rows of a format\n");
 }
 
@@ -114,7 +113,8 @@ void finish(const BenchCommand& command, const BenchReport& baseline, const Benc
     if (!command.report.empty()) write_whole_file(command.report, bench_report_text(now));
     if (command.baseline.empty()) return;
     const BenchComparison result = compare_bench(baseline, now, command.tolerance);
-    fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", command.baseline, command.tolerance, result.text);
+    fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", command.baseline, command.tolerance,
+               result.text);
     std::fflush(stdout);
     if (result.failed())
         throw CheckFailure{fmt::format("{}: of {} rows {} slower by more than {} %, {} with another image",
@@ -127,11 +127,12 @@ void finish(const BenchCommand& command, const BenchReport& baseline, const Benc
 std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session, const Scene& scene,
                                    const RingSettings& settings, const std::vector<NumberFormat>& formats) {
     std::vector<BenchRow> rows;
-    for (const NumberFormat& format : formats)
+    for (const NumberFormat& format : formats) {
         for (const std::string& way : command.ways) rows.push_back(render_row(session, scene, settings, format, way));
-    for (const NumberFormat& format : command.ways.empty() ? formats : std::vector<NumberFormat>{})
+        if (!command.ways.empty()) continue;
         for (const std::uint32_t lanes : command.render.lanes ? std::vector{*command.render.lanes} : command.lanes)
             rows.push_back(trace_row(session, scene, settings, format, lanes));
+    }
     check_rows(rows);
     return rows;
 }
