@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "report/scratch_folder.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 int main(int argc, char** argv) {
     const raya::ScratchFolder cache;

@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "cl/opencl.hpp"
+#include "host/cl/opencl.hpp"
 
 namespace raya {
 

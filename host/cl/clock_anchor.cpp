@@ -1,4 +1,4 @@
-#include "cl/clock_anchor.hpp"
+#include "host/cl/clock_anchor.hpp"
 
 #include <algorithm>
 #include <stdexcept>

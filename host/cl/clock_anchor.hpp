@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "cl/commands.hpp"
+#include "host/cl/commands.hpp"
 
 namespace raya {
 

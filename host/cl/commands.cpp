@@ -1,4 +1,4 @@
-#include "cl/commands.hpp"
+#include "host/cl/commands.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "cl/error_names.hpp"
+#include "host/cl/error_names.hpp"
 
 namespace raya {
 namespace {

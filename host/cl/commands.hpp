@@ -6,13 +6,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "cl/buffer.hpp"
-#include "cl/device.hpp"
-#include "cl/kernel.hpp"
-#include "cl/opencl.hpp"
-#include "cl/profile.hpp"
-#include "cl/program.hpp"
-#include "cl/step_log.hpp"
+#include "host/cl/buffer.hpp"
+#include "host/cl/device.hpp"
+#include "host/cl/kernel.hpp"
+#include "host/cl/opencl.hpp"
+#include "host/cl/profile.hpp"
+#include "host/cl/program.hpp"
+#include "host/cl/step_log.hpp"
 
 namespace raya {
 

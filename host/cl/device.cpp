@@ -1,4 +1,4 @@
-#include "cl/device.hpp"
+#include "host/cl/device.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "cl/error_names.hpp"
+#include "host/cl/error_names.hpp"
 
 namespace raya {
 namespace {

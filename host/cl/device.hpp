@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cl/opencl.hpp"
+#include "host/cl/opencl.hpp"
 
 namespace raya {
 

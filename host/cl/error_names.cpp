@@ -1,4 +1,4 @@
-#include "cl/error_names.hpp"
+#include "host/cl/error_names.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "cl/opencl.hpp"
-#include "error.hpp"
+#include "host/cl/opencl.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 

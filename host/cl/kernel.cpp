@@ -1,4 +1,4 @@
-#include "cl/kernel.hpp"
+#include "host/cl/kernel.hpp"
 
 namespace raya {
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "cl/buffer.hpp"
-#include "cl/error_names.hpp"
-#include "cl/opencl.hpp"
-#include "cl/profile.hpp"
+#include "host/cl/buffer.hpp"
+#include "host/cl/error_names.hpp"
+#include "host/cl/opencl.hpp"
+#include "host/cl/profile.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "cl/kernel_source.hpp"
+#include "host/cl/kernel_source.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string_view>
 
-#include "embedded.hpp"
-#include "error.hpp"
+#include "host/embedded.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {
@@ -30,11 +30,14 @@ std::string read_kernel_file(const std::string& file, const std::filesystem::pat
     return text.str();
 }
 
-// The file that a line includes, empty for any other line.
-std::string included_file(const std::string& line) {
-    constexpr std::string_view kInclude = "#include \"";
+// The kernel file that a line of `file` includes, as a path below kernels/; empty for any other line. What has no
+// folder in its name lies beside `file`.
+std::string included_file(const std::string& line, const std::string& file) {
+    constexpr std::string_view kInclude = "#include \"", kKernels = "kernels/";
     if (!line.starts_with(kInclude)) return {};
-    return line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
+    const std::string name = line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
+    if (name.starts_with(kKernels)) return name.substr(kKernels.size());
+    return name.find('/') == std::string::npos ? (std::filesystem::path(file).parent_path() / name).string() : name;
 }
 
 void append(std::string& source, const std::string& text, const std::string& name, const std::filesystem::path& folder,
@@ -44,7 +47,7 @@ void append(std::string& source, const std::string& text, const std::string& nam
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;
-        const std::string included = included_file(line);
+        const std::string included = included_file(line, name);
         if (included.empty()) {
             source += line + '\n';
         } else {

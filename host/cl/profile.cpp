@@ -1,4 +1,4 @@
-#include "cl/profile.hpp"
+#include "host/cl/profile.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,11 +1,11 @@
-#include "cl/program.hpp"
+#include "host/cl/program.hpp"
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <utility>
 
-#include "cl/error_names.hpp"
+#include "host/cl/error_names.hpp"
 
 namespace raya {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/kernel.hpp"
-#include "cl/opencl.hpp"
+#include "host/cl/kernel.hpp"
+#include "host/cl/opencl.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "cl/step_log.hpp"
+#include "host/cl/step_log.hpp"
 
 #include <ctime>
 

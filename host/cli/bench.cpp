@@ -8,19 +8,19 @@
 #include <memory>
 #include <sstream>
 
-#include "cli/bench_rows.hpp"
-#include "cli/commands.hpp"
-#include "cli/parse.hpp"
-#include "cli/render_options.hpp"
-#include "embedded.hpp"
-#include "error.hpp"
-#include "kernels/kernel_options.hpp"
-#include "report/bench_compare.hpp"
-#include "report/render_report.hpp"
-#include "report/table.hpp"
-#include "report/whole_file.hpp"
-#include "ring/operation_rates.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/cli/bench_rows.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/parse.hpp"
+#include "host/cli/render_options.hpp"
+#include "host/embedded.hpp"
+#include "host/error.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/report/bench_compare.hpp"
+#include "host/report/render_report.hpp"
+#include "host/report/table.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/ring/operation_rates.hpp"
+#include "host/scene/nff_reader.hpp"
 
 namespace raya {
 namespace {

@@ -1,18 +1,18 @@
-#include "cli/bench_rows.hpp"
+#include "host/cli/bench_rows.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "cli/parse.hpp"
-#include "error.hpp"
-#include "image/image.hpp"
-#include "report/render_report.hpp"
-#include "ring/mapping.hpp"
-#include "ring/ring_renderer.hpp"
-#include "torus/topology.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/cli/parse.hpp"
+#include "host/error.hpp"
+#include "host/image/image.hpp"
+#include "host/report/render_report.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/torus/topology.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "report/bench_report.hpp"
-#include "ring/ring_renderer.hpp"
+#include "host/report/bench_report.hpp"
+#include "host/ring/ring_renderer.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "cli/commands.hpp"
+#include "host/cli/commands.hpp"
 
 #include <fmt/core.h>
 
@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <new>
 
-#include "error.hpp"
-#include "report/interruption.hpp"
+#include "host/error.hpp"
+#include "host/report/interruption.hpp"
 
 namespace raya {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cl/device.hpp"
-#include "cli/commands.hpp"
-#include "error.hpp"
-#include "kernels/kernel_options.hpp"
-#include "report/table.hpp"
+#include "host/cl/device.hpp"
+#include "host/cli/commands.hpp"
+#include "host/error.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/report/table.hpp"
 
 namespace raya {
 namespace {

@@ -1,15 +1,15 @@
 // raya generate: scenes that a program makes.
-#include "scene/generate.hpp"
+#include "host/scene/generate.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "cli/commands.hpp"
-#include "cli/parse.hpp"
-#include "report/whole_file.hpp"
-#include "scene/nff_writer.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/parse.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/scene/nff_writer.hpp"
 
 namespace raya {
 namespace {

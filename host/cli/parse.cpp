@@ -1,12 +1,12 @@
-#include "cli/parse.hpp"
+#include "host/cli/parse.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
 
-#include "error.hpp"
-#include "ring/mapping.hpp"
+#include "host/error.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
 

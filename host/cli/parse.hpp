@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "grid/accel.hpp"
+#include "host/grid/accel.hpp"
 
 namespace CLI {
 class App;

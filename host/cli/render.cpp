@@ -2,9 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "cli/commands.hpp"
-#include "cli/parse.hpp"
-#include "cli/render_command.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/parse.hpp"
+#include "host/cli/render_command.hpp"
 
 namespace raya {
 namespace {

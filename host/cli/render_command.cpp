@@ -1,4 +1,4 @@
-#include "cli/render_command.hpp"
+#include "host/cli/render_command.hpp"
 
 #include <fmt/core.h>
 
@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "error.hpp"
-#include "report/profile_table.hpp"
-#include "report/whole_file.hpp"
-#include "ring/device_peak.hpp"
+#include "host/error.hpp"
+#include "host/report/profile_table.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/ring/device_peak.hpp"
 
 namespace raya {
 namespace {

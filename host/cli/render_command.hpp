@@ -3,11 +3,11 @@
 #pragma once
 #include <string>
 
-#include "cli/render_options.hpp"
-#include "cli/render_watch.hpp"
-#include "cli/torus_options.hpp"
-#include "image/image_io.hpp"
-#include "report/render_report.hpp"
+#include "host/cli/render_options.hpp"
+#include "host/cli/render_watch.hpp"
+#include "host/cli/torus_options.hpp"
+#include "host/image/image_io.hpp"
+#include "host/report/render_report.hpp"
 
 namespace raya {
 

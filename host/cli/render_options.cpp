@@ -1,12 +1,12 @@
-#include "cli/render_options.hpp"
+#include "host/cli/render_options.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
-#include "cli/parse.hpp"
-#include "error.hpp"
-#include "ring/mapping.hpp"
+#include "host/cli/parse.hpp"
+#include "host/error.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "cl/device.hpp"
-#include "ring/ring_renderer.hpp"
-#include "scene/scene.hpp"
+#include "host/cl/device.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/scene.hpp"
 
 namespace CLI {
 class App;

@@ -1,11 +1,11 @@
 // raya render on a ring machine: pixels are divided among the PEs.
-#include "cli/render_command.hpp"
-#include "machine/budget.hpp"
-#include "report/progress.hpp"
-#include "ring/mapping.hpp"
-#include "ring/ring_trace.hpp"
-#include "ring/ring_work.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/cli/render_command.hpp"
+#include "host/machine/budget.hpp"
+#include "host/report/progress.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_trace.hpp"
+#include "host/ring/ring_work.hpp"
+#include "host/scene/nff_reader.hpp"
 
 namespace raya {
 namespace {

@@ -3,14 +3,14 @@
 #include <numeric>
 #include <optional>
 
-#include "cli/render_command.hpp"
-#include "report/progress.hpp"
-#include "report/whole_file.hpp"
-#include "scene/nff_reader.hpp"
-#include "torus/packet_trace.hpp"
-#include "torus/torus_time.hpp"
-#include "torus/torus_trace.hpp"
-#include "torus/torus_work.hpp"
+#include "host/cli/render_command.hpp"
+#include "host/report/progress.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/torus/packet_trace.hpp"
+#include "host/torus/torus_time.hpp"
+#include "host/torus/torus_trace.hpp"
+#include "host/torus/torus_work.hpp"
 
 namespace raya {
 namespace {

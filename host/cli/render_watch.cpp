@@ -1,13 +1,13 @@
-#include "cli/render_watch.hpp"
+#include "host/cli/render_watch.hpp"
 
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 
-#include "cl/clock_anchor.hpp"
-#include "error.hpp"
-#include "report/session_trace.hpp"
-#include "report/whole_file.hpp"
+#include "host/cl/clock_anchor.hpp"
+#include "host/error.hpp"
+#include "host/report/session_trace.hpp"
+#include "host/report/whole_file.hpp"
 
 namespace raya {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "cl/commands.hpp"
-#include "report/render_report.hpp"
-#include "report/trace_file.hpp"
+#include "host/cl/commands.hpp"
+#include "host/report/render_report.hpp"
+#include "host/report/trace_file.hpp"
 
 namespace CLI {
 class App;

@@ -9,16 +9,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/commands.hpp"
-#include "cli/parse.hpp"
-#include "cli/studies.hpp"
-#include "error.hpp"
-#include "report/progress.hpp"
-#include "report/table.hpp"
-#include "report/whole_file.hpp"
-#include "scene/nff_reader.hpp"
-#include "study/formats_report.hpp"
-#include "study/formats_study.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/parse.hpp"
+#include "host/cli/studies.hpp"
+#include "host/error.hpp"
+#include "host/report/progress.hpp"
+#include "host/report/table.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/study/formats_report.hpp"
+#include "host/study/formats_study.hpp"
 
 namespace raya {
 namespace {

@@ -7,14 +7,14 @@
 #include <memory>
 #include <optional>
 
-#include "cli/parse.hpp"
-#include "cli/studies.hpp"
-#include "error.hpp"
-#include "report/progress.hpp"
-#include "report/whole_file.hpp"
-#include "scene/nff_reader.hpp"
-#include "study/page_writer.hpp"
-#include "study/studies.hpp"
+#include "host/cli/parse.hpp"
+#include "host/cli/studies.hpp"
+#include "host/error.hpp"
+#include "host/report/progress.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/study/page_writer.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

@@ -1,11 +1,11 @@
-#include "cli/torus_options.hpp"
+#include "host/cli/torus_options.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
-#include "cli/parse.hpp"
-#include "error.hpp"
+#include "host/cli/parse.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

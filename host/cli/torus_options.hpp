@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "cli/render_options.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/cli/render_options.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

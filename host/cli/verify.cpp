@@ -1,5 +1,5 @@
 // raya verify: is this device, with its driver and its compiler, right?
-#include "verify/verify.hpp"
+#include "host/verify/verify.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -9,12 +9,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.hpp"
-#include "cli/parse.hpp"
-#include "error.hpp"
-#include "report/whole_file.hpp"
-#include "verify/supervisor.hpp"
-#include "verify/worker.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/parse.hpp"
+#include "host/error.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/verify/supervisor.hpp"
+#include "host/verify/worker.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,4 @@
-#include "grid/accel.hpp"
+#include "host/grid/accel.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "error.hpp"
-#include "grid/hit_regions.hpp"
+#include "host/error.hpp"
+#include "host/grid/hit_regions.hpp"
 
 namespace raya {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "grid/partition.hpp"
+#include "host/grid/partition.hpp"
 
 namespace raya {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "machine/number_format.hpp"
-#include "scene/packer.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 

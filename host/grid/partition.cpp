@@ -1,4 +1,4 @@
-#include "grid/partition.hpp"
+#include "host/grid/partition.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <limits>
 
-#include "error.hpp"
-#include "grid/hit_regions.hpp"
+#include "host/error.hpp"
+#include "host/grid/hit_regions.hpp"
 
 namespace raya {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "machine/number_format.hpp"
-#include "scene/packer.hpp"
-#include "shared/grid.h"
+#include "host/machine/number_format.hpp"
+#include "host/scene/packer.hpp"
+#include "kernels/shared/grid.h"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "image/image.hpp"
+#include "host/image/image.hpp"
 
 #include <xxhash.h>
 

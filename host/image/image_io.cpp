@@ -1,4 +1,4 @@
-#include "image/image_io.hpp"
+#include "host/image/image_io.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -10,10 +10,10 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "error.hpp"
-#include "image/pfm.hpp"
-#include "image/srgb.hpp"
-#include "report/whole_file.hpp"
+#include "host/error.hpp"
+#include "host/image/pfm.hpp"
+#include "host/image/srgb.hpp"
+#include "host/report/whole_file.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;

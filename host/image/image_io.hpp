@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/image.hpp"
+#include "host/image/image.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "image/pfm.hpp"
+#include "host/image/pfm.hpp"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "image/srgb.hpp"
+#include "host/image/srgb.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "kernels/kernel_options.hpp"
+#include "host/kernels/kernel_options.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

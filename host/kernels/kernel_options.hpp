@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/device.hpp"
-#include "machine/number_format.hpp"
+#include "host/cl/device.hpp"
+#include "host/machine/number_format.hpp"
 
 namespace raya {
 

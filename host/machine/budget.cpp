@@ -1,4 +1,4 @@
-#include "machine/budget.hpp"
+#include "host/machine/budget.hpp"
 
 namespace raya {
 namespace {

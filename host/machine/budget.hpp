@@ -19,7 +19,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/machine.hpp"
+#include "host/machine/machine.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "machine/load.hpp"
+#include "host/machine/load.hpp"
 
 #include <algorithm>
 #include <numeric>

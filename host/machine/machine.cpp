@@ -1,13 +1,13 @@
-#include "machine/machine.hpp"
+#include "host/machine/machine.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "error.hpp"
-#include "machine/budget.hpp"
-#include "machine/t805.hpp"
+#include "host/error.hpp"
+#include "host/machine/budget.hpp"
+#include "host/machine/t805.hpp"
 
 namespace raya {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "machine/number_format.hpp"
-#include "shared/events.h"
+#include "host/machine/number_format.hpp"
+#include "kernels/shared/events.h"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "machine/number_format.hpp"
+#include "host/machine/number_format.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -1,9 +1,9 @@
-#include "machine/t805.hpp"
+#include "host/machine/t805.hpp"
 
 #include <algorithm>
 
-#include "machine/budget.hpp"
-#include "shared/packet.h"
+#include "host/machine/budget.hpp"
+#include "kernels/shared/packet.h"
 
 namespace raya {
 namespace {

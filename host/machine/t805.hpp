@@ -17,7 +17,7 @@
 #include <array>
 #include <cstdint>
 
-#include "shared/events.h"
+#include "kernels/shared/events.h"
 
 namespace raya {
 

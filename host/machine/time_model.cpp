@@ -1,4 +1,4 @@
-#include "machine/time_model.hpp"
+#include "host/machine/time_model.hpp"
 
 namespace raya {
 namespace {

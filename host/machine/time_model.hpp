@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
-#include "machine/communication.hpp"
-#include "machine/load.hpp"
-#include "machine/machine.hpp"
+#include "host/machine/communication.hpp"
+#include "host/machine/load.hpp"
+#include "host/machine/machine.hpp"
 
 namespace raya {
 

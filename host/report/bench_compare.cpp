@@ -1,4 +1,4 @@
-#include "report/bench_compare.hpp"
+#include "host/report/bench_compare.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "report/table.hpp"
+#include "host/report/table.hpp"
 
 namespace raya {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "report/bench_report.hpp"
+#include "host/report/bench_report.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "report/bench_report.hpp"
+#include "host/report/bench_report.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

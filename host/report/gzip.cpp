@@ -1,4 +1,4 @@
-#include "report/gzip.hpp"
+#include "host/report/gzip.hpp"
 
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-#include "report/interruption.hpp"
+#include "host/report/interruption.hpp"
 
 #include <unistd.h>
 

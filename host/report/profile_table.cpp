@@ -1,10 +1,10 @@
-#include "report/profile_table.hpp"
+#include "host/report/profile_table.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "report/table.hpp"
+#include "host/report/table.hpp"
 
 namespace raya {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/profile.hpp"
-#include "report/render_report.hpp"
+#include "host/cl/profile.hpp"
+#include "host/report/render_report.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "report/progress.hpp"
+#include "host/report/progress.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -1,11 +1,11 @@
-#include "report/render_report.hpp"
+#include "host/report/render_report.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "machine/budget.hpp"
-#include "report/profile_table.hpp"
+#include "host/machine/budget.hpp"
+#include "host/report/profile_table.hpp"
 
 namespace raya {
 namespace {

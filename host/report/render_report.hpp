@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "cl/profile.hpp"
-#include "machine/communication.hpp"
-#include "machine/load.hpp"
-#include "machine/machine.hpp"
-#include "machine/time_model.hpp"
-#include "report/roofline.hpp"
-#include "report/torus_report.hpp"
+#include "host/cl/profile.hpp"
+#include "host/machine/communication.hpp"
+#include "host/machine/load.hpp"
+#include "host/machine/machine.hpp"
+#include "host/machine/time_model.hpp"
+#include "host/report/roofline.hpp"
+#include "host/report/torus_report.hpp"
 
 namespace raya {
 

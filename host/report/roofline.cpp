@@ -1,12 +1,12 @@
-#include "report/roofline.hpp"
+#include "host/report/roofline.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "machine/budget.hpp"
-#include "report/table.hpp"
+#include "host/machine/budget.hpp"
+#include "host/report/table.hpp"
 
 namespace raya {
 namespace {

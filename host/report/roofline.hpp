@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/profile.hpp"
-#include "machine/machine.hpp"
+#include "host/cl/profile.hpp"
+#include "host/machine/machine.hpp"
 
 namespace raya {
 

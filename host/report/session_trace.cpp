@@ -1,4 +1,4 @@
-#include "report/session_trace.hpp"
+#include "host/report/session_trace.hpp"
 
 #include <fmt/format.h>
 

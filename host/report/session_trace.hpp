@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "cl/profile.hpp"
-#include "cl/step_log.hpp"
-#include "report/trace_file.hpp"
+#include "host/cl/profile.hpp"
+#include "host/cl/step_log.hpp"
+#include "host/report/trace_file.hpp"
 
 namespace raya {
 

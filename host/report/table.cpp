@@ -1,4 +1,4 @@
-#include "report/table.hpp"
+#include "host/report/table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
-#include "report/torus_report.hpp"
+#include "host/report/torus_report.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "machine/budget.hpp"
-#include "machine/t805.hpp"
+#include "host/machine/budget.hpp"
+#include "host/machine/t805.hpp"
 
 namespace raya {
 namespace {

@@ -5,9 +5,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "machine/machine.hpp"
-#include "machine/time_model.hpp"
-#include "shared/packet.h"
+#include "host/machine/machine.hpp"
+#include "host/machine/time_model.hpp"
+#include "kernels/shared/packet.h"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "report/trace_file.hpp"
+#include "host/report/trace_file.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "report/gzip.hpp"
+#include "host/report/gzip.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,4 @@
-#include "report/traced_pes.hpp"
+#include "host/report/traced_pes.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "report/whole_file.hpp"
+#include "host/report/whole_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <system_error>
 
-#include "error.hpp"
-#include "report/interruption.hpp"
+#include "host/error.hpp"
+#include "host/report/interruption.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;

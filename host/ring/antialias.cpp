@@ -1,12 +1,12 @@
-#include "ring/antialias.hpp"
+#include "host/ring/antialias.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 
-#include "error.hpp"
-#include "machine/budget.hpp"
-#include "ring/mapping.hpp"
+#include "host/error.hpp"
+#include "host/machine/budget.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
 namespace {

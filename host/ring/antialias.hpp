@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "machine/time_model.hpp"
-#include "shared/neighbours.h"
+#include "host/machine/time_model.hpp"
+#include "kernels/shared/neighbours.h"
 
 namespace raya {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "cl/commands.hpp"
-#include "machine/communication.hpp"
+#include "host/cl/commands.hpp"
+#include "host/machine/communication.hpp"
 
 namespace raya {
 

@@ -1,6 +1,6 @@
-#include "ring/contrast.hpp"
+#include "host/ring/contrast.hpp"
 
-#include "cl/kernel_source.hpp"
+#include "host/cl/kernel_source.hpp"
 
 namespace raya {
 

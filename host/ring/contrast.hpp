@@ -1,7 +1,7 @@
 // Marks the pixels that differ from a neighbour, over the ring (kernels/ring/contrast.cl).
 #pragma once
-#include "ring/exchange_setup.hpp"
-#include "ring/neighbour_exchange.hpp"
+#include "host/ring/exchange_setup.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 
 namespace raya {
 

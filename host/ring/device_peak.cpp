@@ -1,10 +1,10 @@
-#include "ring/device_peak.hpp"
+#include "host/ring/device_peak.hpp"
 
 #include <algorithm>
 
-#include "cl/commands.hpp"
-#include "kernels/kernel_options.hpp"
-#include "ring/operation_rates.hpp"
+#include "host/cl/commands.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/ring/operation_rates.hpp"
 
 namespace raya {
 namespace {

@@ -2,9 +2,9 @@
 #pragma once
 #include <cstdint>
 
-#include "cl/device.hpp"
-#include "machine/number_format.hpp"
-#include "report/roofline.hpp"
+#include "host/cl/device.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/report/roofline.hpp"
 
 namespace raya {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
+#include "host/cl/commands.hpp"
 
 namespace raya {
 

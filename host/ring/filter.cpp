@@ -1,8 +1,8 @@
-#include "ring/filter.hpp"
+#include "host/ring/filter.hpp"
 
 #include <utility>
 
-#include "cl/kernel_source.hpp"
+#include "host/cl/kernel_source.hpp"
 
 namespace raya {
 

@@ -1,7 +1,7 @@
 // The 3 x 3 filter over the ring (kernels/ring/filter.cl).
 #pragma once
-#include "ring/exchange_setup.hpp"
-#include "ring/neighbour_exchange.hpp"
+#include "host/ring/exchange_setup.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "ring/mapping.hpp"
+#include "host/ring/mapping.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <charconv>
 #include <limits>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/mapping.h"
+#include "kernels/shared/mapping.h"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "ring/neighbour_exchange.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 
 namespace raya {
 namespace {

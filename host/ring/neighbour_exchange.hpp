@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "ring/ring.hpp"
+#include "host/ring/ring.hpp"
 
 namespace raya {
 

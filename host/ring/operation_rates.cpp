@@ -1,10 +1,10 @@
-#include "ring/operation_rates.hpp"
+#include "host/ring/operation_rates.hpp"
 
 #include <algorithm>
 
-#include "cl/kernel_source.hpp"
-#include "kernels/kernel_options.hpp"
-#include "shared/chains.h"
+#include "host/cl/kernel_source.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "kernels/shared/chains.h"
 
 namespace raya {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "cl/commands.hpp"
-#include "machine/number_format.hpp"
+#include "host/cl/commands.hpp"
+#include "host/machine/number_format.hpp"
 
 namespace raya {
 

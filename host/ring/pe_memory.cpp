@@ -1,10 +1,10 @@
-#include "ring/pe_memory.hpp"
+#include "host/ring/pe_memory.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "machine/machine.hpp"
-#include "ring/antialias.hpp"
+#include "host/machine/machine.hpp"
+#include "host/ring/antialias.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "ring/ring.hpp"
+#include "host/ring/ring.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "cl/commands.hpp"
-#include "machine/communication.hpp"
-#include "ring/route.hpp"
+#include "host/cl/commands.hpp"
+#include "host/machine/communication.hpp"
+#include "host/ring/route.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "ring/ring_plan.hpp"
+#include "host/ring/ring_plan.hpp"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // How a render on a ring machine is set up on a device: what is chosen where the user leaves the choice.
 #pragma once
-#include "cl/device.hpp"
-#include "kernels/kernel_options.hpp"
-#include "ring/ring_renderer.hpp"
-#include "scene/packer.hpp"
+#include "host/cl/device.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 

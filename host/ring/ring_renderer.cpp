@@ -1,13 +1,13 @@
-#include "ring/ring_renderer.hpp"
+#include "host/ring/ring_renderer.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 
-#include "error.hpp"
-#include "ring/mapping.hpp"
-#include "ring/ring_plan.hpp"
+#include "host/error.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_plan.hpp"
 
 namespace raya {
 namespace {

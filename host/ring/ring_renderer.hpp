@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "grid/accel.hpp"
-#include "image/image.hpp"
-#include "machine/load.hpp"
-#include "machine/machine.hpp"
-#include "ring/antialias.hpp"
-#include "ring/bus.hpp"
-#include "ring/contrast.hpp"
-#include "ring/cost_image.hpp"
-#include "ring/filter.hpp"
-#include "ring/neighbour_exchange.hpp"
-#include "ring/pe_memory.hpp"
-#include "ring/schedule.hpp"
-#include "ring/tracer.hpp"
-#include "scene/packer.hpp"
-#include "scene/scene.hpp"
+#include "host/grid/accel.hpp"
+#include "host/image/image.hpp"
+#include "host/machine/load.hpp"
+#include "host/machine/machine.hpp"
+#include "host/ring/antialias.hpp"
+#include "host/ring/bus.hpp"
+#include "host/ring/contrast.hpp"
+#include "host/ring/cost_image.hpp"
+#include "host/ring/filter.hpp"
+#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/pe_memory.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/ring/tracer.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "ring/ring_trace.hpp"
+#include "host/ring/ring_trace.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "machine/budget.hpp"
-#include "report/traced_pes.hpp"
-#include "ring/mapping.hpp"
+#include "host/machine/budget.hpp"
+#include "host/report/traced_pes.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <cstddef>
 
-#include "report/trace_file.hpp"
-#include "ring/ring_renderer.hpp"
+#include "host/report/trace_file.hpp"
+#include "host/ring/ring_renderer.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "ring/ring_work.hpp"
+#include "host/ring/ring_work.hpp"
 
 namespace raya {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "report/roofline.hpp"
-#include "ring/ring_renderer.hpp"
+#include "host/report/roofline.hpp"
+#include "host/ring/ring_renderer.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "ring/route.hpp"
+#include "host/ring/route.hpp"
 
 #include <algorithm>
 #include <limits>

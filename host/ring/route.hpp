@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shared/neighbours.h"
+#include "kernels/shared/neighbours.h"
 
 namespace raya {
 

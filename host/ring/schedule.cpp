@@ -1,4 +1,4 @@
-#include "ring/schedule.hpp"
+#include "host/ring/schedule.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "machine/load.hpp"
-#include "ring/cost_image.hpp"
-#include "ring/mapping.hpp"
+#include "host/machine/load.hpp"
+#include "host/ring/cost_image.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
 

@@ -1,8 +1,8 @@
-#include "ring/tracer.hpp"
+#include "host/ring/tracer.hpp"
 
 #include <algorithm>
 
-#include "cl/kernel_source.hpp"
+#include "host/cl/kernel_source.hpp"
 
 namespace raya {
 

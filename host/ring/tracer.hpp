@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "kernels/kernel_options.hpp"
-#include "report/progress.hpp"
-#include "ring/antialias.hpp"
-#include "scene/packer.hpp"
+#include "host/cl/commands.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/report/progress.hpp"
+#include "host/ring/antialias.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "scene/generate.hpp"
+#include "host/scene/generate.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "error.hpp"
-#include "scene/split_mix.hpp"
+#include "host/error.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {

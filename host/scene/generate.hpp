@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "error.hpp"
-#include "scene/generate.hpp"
+#include "host/error.hpp"
+#include "host/scene/generate.hpp"
 
 namespace raya {
 namespace {

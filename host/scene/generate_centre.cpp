@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/generate.hpp"
+#include "host/scene/generate.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/nff_reader.hpp"
+#include "host/scene/nff_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -15,9 +15,9 @@
 #include <system_error>
 #include <utility>
 
-#include "error.hpp"
-#include "scene/nff_tokens.hpp"
-#include "scene/outline.hpp"
+#include "host/error.hpp"
+#include "host/scene/nff_tokens.hpp"
+#include "host/scene/outline.hpp"
 
 namespace raya {
 namespace {

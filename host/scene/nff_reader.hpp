@@ -21,7 +21,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

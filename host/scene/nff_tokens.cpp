@@ -1,4 +1,4 @@
-#include "scene/nff_tokens.hpp"
+#include "host/scene/nff_tokens.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -1,11 +1,11 @@
-#include "scene/nff_writer.hpp"
+#include "host/scene/nff_writer.hpp"
 
 #include <fmt/format.h>
 
 #include <cstddef>
 #include <iterator>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

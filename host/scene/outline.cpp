@@ -1,4 +1,4 @@
-#include "scene/outline.hpp"
+#include "host/scene/outline.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "scene/polygon_plane.hpp"
+#include "host/scene/polygon_plane.hpp"
 
 namespace raya {
 namespace {

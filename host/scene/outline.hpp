@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

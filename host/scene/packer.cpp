@@ -1,4 +1,4 @@
-#include "scene/packer.hpp"
+#include "host/scene/packer.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <cstring>
 #include <numbers>
 
-#include "error.hpp"
-#include "scene/polygon_plane.hpp"
-#include "scene/triangulate.hpp"
+#include "host/error.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/triangulate.hpp"
 
 namespace raya {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "machine/number_format.hpp"
-#include "scene/scene.hpp"
-#include "shared/job.h"
+#include "host/machine/number_format.hpp"
+#include "host/scene/scene.hpp"
+#include "kernels/shared/job.h"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "scene/polygon_plane.hpp"
+#include "host/scene/polygon_plane.hpp"
 
 #include <cmath>
 

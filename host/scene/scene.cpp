@@ -1,4 +1,4 @@
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 #include <algorithm>
 #include <array>

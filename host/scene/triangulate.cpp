@@ -1,10 +1,10 @@
-#include "scene/triangulate.hpp"
+#include "host/scene/triangulate.hpp"
 
 #include <Imath/ImathVec.h>
 
 #include <cstddef>
 
-#include "scene/polygon_plane.hpp"
+#include "host/scene/polygon_plane.hpp"
 
 namespace raya {
 namespace {

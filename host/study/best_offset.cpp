@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "ring/schedule.hpp"
-#include "study/laboratory.hpp"
-#include "study/offset_times.hpp"
-#include "study/studies.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/offset_times.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/divisions.hpp"
+#include "host/study/divisions.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,11 +8,11 @@
 #include <functional>
 #include <stdexcept>
 
-#include "machine/machine.hpp"
-#include "scene/generate.hpp"
-#include "study/grid_papers.hpp"
-#include "study/studies.hpp"
-#include "torus/topology.hpp"
+#include "host/machine/machine.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/grid_papers.hpp"
+#include "host/study/studies.hpp"
+#include "host/torus/topology.hpp"
 
 namespace raya {
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "ring/schedule.hpp"
-#include "study/laboratory.hpp"
-#include "study/paper.hpp"
-#include "study/studies.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

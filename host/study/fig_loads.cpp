@@ -1,11 +1,11 @@
 // Fig. 7 and Fig. 12: the load of each PE for the column split and for p = 16, in the first pass and in supersampling.
 #include <fmt/format.h>
 
-#include "ring/mapping.hpp"
-#include "ring/schedule.hpp"
-#include "study/laboratory.hpp"
-#include "study/paper.hpp"
-#include "study/studies.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

@@ -1,5 +1,5 @@
 // Fig. 9: speed-up against the number of PEs, column split and cyclic mapping, and 2-D interleaving beside them.
-#include "study/fig_speedup.hpp"
+#include "host/study/fig_speedup.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,12 +8,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "ring/mapping.hpp"
-#include "ring/schedule.hpp"
-#include "study/arrays.hpp"
-#include "study/laboratory.hpp"
-#include "study/paper.hpp"
-#include "study/studies.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/arrays.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

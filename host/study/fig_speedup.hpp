@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "ring/cost_image.hpp"
-#include "study/page.hpp"
+#include "host/ring/cost_image.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "study/formats_findings.hpp"
+#include "host/study/formats_findings.hpp"
 
 #include <fmt/format.h>
 

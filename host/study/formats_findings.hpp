@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "study/formats_study.hpp"
+#include "host/study/formats_study.hpp"
 
 namespace raya {
 

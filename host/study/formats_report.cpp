@@ -1,11 +1,11 @@
-#include "study/formats_report.hpp"
+#include "host/study/formats_report.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "study/formats_findings.hpp"
-#include "study/text_tables.hpp"
+#include "host/study/formats_findings.hpp"
+#include "host/study/text_tables.hpp"
 
 namespace raya {
 namespace {

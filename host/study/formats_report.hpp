@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "study/formats_study.hpp"
+#include "host/study/formats_study.hpp"
 
 namespace raya {
 

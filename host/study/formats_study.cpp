@@ -1,12 +1,12 @@
-#include "study/formats_study.hpp"
+#include "host/study/formats_study.hpp"
 
 #include <algorithm>
 #include <memory>
 
-#include "embedded.hpp"
-#include "reference/reference.hpp"
-#include "ring/mapping.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/embedded.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "machine/number_format.hpp"
-#include "ring/ring_renderer.hpp"
-#include "scene/scene.hpp"
-#include "study/image_difference.hpp"
-#include "study/scenes.hpp"
+#include "host/cl/commands.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/scene.hpp"
+#include "host/study/image_difference.hpp"
+#include "host/study/scenes.hpp"
 
 namespace raya {
 

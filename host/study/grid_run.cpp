@@ -1,13 +1,13 @@
-#include "study/grid_run.hpp"
+#include "host/study/grid_run.hpp"
 
 #include <algorithm>
 
-#include "machine/budget.hpp"
-#include "machine/machine.hpp"
-#include "machine/t805.hpp"
-#include "ring/mapping.hpp"
-#include "ring/ring_renderer.hpp"
-#include "scene/packer.hpp"
+#include "host/machine/budget.hpp"
+#include "host/machine/machine.hpp"
+#include "host/machine/t805.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 namespace {

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <string>
 
-#include "cl/commands.hpp"
-#include "grid/partition.hpp"
-#include "machine/machine.hpp"
-#include "scene/packer.hpp"
-#include "study/measured.hpp"
-#include "study/scenes.hpp"
+#include "host/cl/commands.hpp"
+#include "host/grid/partition.hpp"
+#include "host/machine/machine.hpp"
+#include "host/scene/packer.hpp"
+#include "host/study/measured.hpp"
+#include "host/study/scenes.hpp"
 
 namespace raya {
 

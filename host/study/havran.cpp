@@ -1,4 +1,4 @@
-#include "study/havran.hpp"
+#include "host/study/havran.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <iterator>
 
-#include "scene/generate.hpp"
-#include "study/grid_papers.hpp"
-#include "study/studies.hpp"
-#include "torus/topology.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/grid_papers.hpp"
+#include "host/study/studies.hpp"
+#include "host/torus/topology.hpp"
 
 namespace raya {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "study/grid_run.hpp"
-#include "study/page.hpp"
+#include "host/study/grid_run.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

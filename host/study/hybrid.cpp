@@ -1,6 +1,6 @@
 // G groups of a machine's nodes share the screen, each divides space over its own nodes: which G is best, and which
 // does memory forbid?
-#include "study/hybrid.hpp"
+#include "host/study/hybrid.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,10 +10,10 @@
 #include <functional>
 #include <numeric>
 
-#include "machine/t805.hpp"
-#include "shared/traffic.h"
-#include "study/studies.hpp"
-#include "study/torus_runs.hpp"
+#include "host/machine/t805.hpp"
+#include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "study/page.hpp"
-#include "study/scenes.hpp"
+#include "host/cl/commands.hpp"
+#include "host/study/page.hpp"
+#include "host/study/scenes.hpp"
 
 namespace raya {
 

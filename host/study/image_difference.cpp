@@ -1,4 +1,4 @@
-#include "study/image_difference.hpp"
+#include "host/study/image_difference.hpp"
 
 #include <algorithm>
 #include <cmath>

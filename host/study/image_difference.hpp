@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

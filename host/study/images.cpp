@@ -1,15 +1,15 @@
 // Efficiency of the column split and of the cyclic mapping over ten scenes and two image sizes.
-#include "study/images.hpp"
+#include "host/study/images.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "ring/mapping.hpp"
-#include "ring/schedule.hpp"
-#include "study/paper.hpp"
-#include "study/studies.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "study/laboratory.hpp"
-#include "study/page.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

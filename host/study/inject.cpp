@@ -1,13 +1,13 @@
 // The root makes all primary rays, as in the paper, or all nodes do: from how many nodes on does the root hold them up?
-#include "study/inject.hpp"
+#include "host/study/inject.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "study/studies.hpp"
-#include "study/torus_runs.hpp"
+#include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
 
 namespace raya {
 namespace {

@@ -1,8 +1,8 @@
-#include "study/laboratory.hpp"
+#include "host/study/laboratory.hpp"
 
-#include "ring/mapping.hpp"
-#include "ring/ring_renderer.hpp"
-#include "scene/packer.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "machine/machine.hpp"
-#include "machine/number_format.hpp"
-#include "ring/antialias.hpp"
-#include "ring/cost_image.hpp"
-#include "study/scenes.hpp"
+#include "host/cl/commands.hpp"
+#include "host/machine/machine.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/ring/antialias.hpp"
+#include "host/ring/cost_image.hpp"
+#include "host/study/scenes.hpp"
 
 namespace raya {
 

@@ -1,5 +1,5 @@
 // Are offsets beyond sqrt(P) worse? Each offset's imbalance over several scenes beside its lattice.
-#include "study/lattice.hpp"
+#include "host/study/lattice.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "ring/schedule.hpp"
-#include "study/studies.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

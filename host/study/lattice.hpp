@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "study/laboratory.hpp"
-#include "study/page.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

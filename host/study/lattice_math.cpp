@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "study/lattice.hpp"
+#include "host/study/lattice.hpp"
 
 namespace raya {
 

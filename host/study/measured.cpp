@@ -1,13 +1,13 @@
-#include "study/measured.hpp"
+#include "host/study/measured.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <numeric>
 #include <vector>
 
-#include "reference/reference.hpp"
-#include "ring/mapping.hpp"
-#include "ring/ring_renderer.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <functional>
 
-#include "cl/commands.hpp"
-#include "machine/number_format.hpp"
-#include "study/scenes.hpp"
+#include "host/cl/commands.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/study/scenes.hpp"
 
 namespace raya {
 

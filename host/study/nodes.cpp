@@ -1,13 +1,13 @@
 // 1 to 4096 transputers: how much faster, how even, how far do packets go, and what is it that stops the gain?
-#include "study/nodes.hpp"
+#include "host/study/nodes.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "study/studies.hpp"
-#include "study/torus_runs.hpp"
+#include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
 
 namespace raya {
 namespace {

@@ -1,9 +1,9 @@
-#include "study/object_scenes.hpp"
+#include "host/study/object_scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/generate.hpp"
+#include "host/scene/generate.hpp"
 
 namespace raya {
 

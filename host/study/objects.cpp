@@ -1,6 +1,6 @@
 // Fig. 4: 64 transputers, 64 to 8320 objects. Is random slower than even, is it for the copies, and does time grow as
 // the objects do?
-#include "study/objects.hpp"
+#include "host/study/objects.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,9 +11,9 @@
 #include <functional>
 #include <set>
 
-#include "study/object_scenes.hpp"
-#include "study/studies.hpp"
-#include "study/torus_runs.hpp"
+#include "host/study/object_scenes.hpp"
+#include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
 
 namespace raya {
 namespace {

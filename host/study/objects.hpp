@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "study/page.hpp"
+#include "host/cl/commands.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

@@ -1,12 +1,12 @@
-#include "study/offset_times.hpp"
+#include "host/study/offset_times.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-#include "ring/mapping.hpp"
-#include "ring/route.hpp"
-#include "ring/schedule.hpp"
-#include "study/spa_times.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/route.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/spa_times.hpp"
 
 namespace raya {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "ring/antialias.hpp"
-#include "scene/scene.hpp"
-#include "study/laboratory.hpp"
+#include "host/ring/antialias.hpp"
+#include "host/scene/scene.hpp"
+#include "host/study/laboratory.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "study/page_writer.hpp"
+#include "host/study/page_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "report/whole_file.hpp"
-#include "study/text_tables.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/study/text_tables.hpp"
 
 namespace raya {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "study/page.hpp"
-#include "study/plotter.hpp"
+#include "host/study/page.hpp"
+#include "host/study/plotter.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "study/plotter.hpp"
+#include "host/study/plotter.hpp"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -12,7 +12,7 @@
 #include <memory>
 #include <system_error>
 
-#include "embedded.hpp"
+#include "host/embedded.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "study/page.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

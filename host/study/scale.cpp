@@ -1,5 +1,5 @@
 // Static mappings on 16 to 1,048,576 PEs: where does each fall under half, and does it take 2-D beyond a PE a column?
-#include "study/scale.hpp"
+#include "host/study/scale.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ring/mapping.hpp"
-#include "ring/schedule.hpp"
-#include "study/arrays.hpp"
-#include "study/laboratory.hpp"
-#include "study/studies.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/arrays.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

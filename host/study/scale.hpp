@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "ring/cost_image.hpp"
-#include "study/page.hpp"
+#include "host/ring/cost_image.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

@@ -1,10 +1,10 @@
-#include "study/scenes.hpp"
+#include "host/study/scenes.hpp"
 
 #include <fmt/format.h>
 
-#include "embedded.hpp"
-#include "scene/generate.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/embedded.hpp"
+#include "host/scene/generate.hpp"
+#include "host/scene/nff_reader.hpp"
 
 namespace raya {
 

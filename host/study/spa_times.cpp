@@ -1,11 +1,11 @@
-#include "study/spa_times.hpp"
+#include "host/study/spa_times.hpp"
 
 #include <fmt/format.h>
 
-#include "error.hpp"
-#include "ring/mapping.hpp"
-#include "ring/schedule.hpp"
-#include "study/paper.hpp"
+#include "host/error.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/paper.hpp"
 
 namespace raya {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "machine/time_model.hpp"
-#include "ring/ring_renderer.hpp"
-#include "study/laboratory.hpp"
+#include "host/machine/time_model.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/study/laboratory.hpp"
 
 namespace raya {
 

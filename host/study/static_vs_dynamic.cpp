@@ -1,10 +1,10 @@
-#include "study/static_vs_dynamic.hpp"
+#include "host/study/static_vs_dynamic.hpp"
 
 #include <fmt/format.h>
 
-#include "scene/generate.hpp"
-#include "study/laboratory.hpp"
-#include "study/studies.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "study/strategies.hpp"
+#include "host/study/strategies.hpp"
 
 namespace raya {
 

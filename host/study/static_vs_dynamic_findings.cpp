@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "study/laboratory.hpp"
-#include "study/static_vs_dynamic.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/static_vs_dynamic.hpp"
 
 namespace raya {
 namespace {

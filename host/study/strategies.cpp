@@ -1,12 +1,12 @@
-#include "study/strategies.hpp"
+#include "host/study/strategies.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "ring/mapping.hpp"
-#include "study/arrays.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/study/arrays.hpp"
 
 namespace raya {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "machine/machine.hpp"
-#include "ring/schedule.hpp"
+#include "host/machine/machine.hpp"
+#include "host/ring/schedule.hpp"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "study/studies.hpp"
+#include "host/study/studies.hpp"
 
 #include <array>
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "study/laboratory.hpp"
-#include "study/page.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

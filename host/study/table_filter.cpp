@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "study/laboratory.hpp"
-#include "study/offset_times.hpp"
-#include "study/paper.hpp"
-#include "study/spa_times.hpp"
-#include "study/studies.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/offset_times.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/spa_times.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

@@ -1,12 +1,12 @@
 // Table 2: what the image takes on the SPA with all its PEs and with one, and what it takes here.
 #include <fmt/format.h>
 
-#include "ring/schedule.hpp"
-#include "study/laboratory.hpp"
-#include "study/measured.hpp"
-#include "study/paper.hpp"
-#include "study/spa_times.hpp"
-#include "study/studies.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/measured.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/spa_times.hpp"
+#include "host/study/studies.hpp"
 
 namespace raya {
 namespace {

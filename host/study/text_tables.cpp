@@ -1,4 +1,4 @@
-#include "study/text_tables.hpp"
+#include "host/study/text_tables.hpp"
 
 #include <fmt/format.h>
 

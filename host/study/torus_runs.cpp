@@ -1,4 +1,4 @@
-#include "study/torus_runs.hpp"
+#include "host/study/torus_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "error.hpp"
-#include "machine/t805.hpp"
-#include "scene/generate.hpp"
+#include "host/error.hpp"
+#include "host/machine/t805.hpp"
+#include "host/scene/generate.hpp"
 
 namespace raya {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "study/laboratory.hpp"
-#include "study/scenes.hpp"
-#include "torus/topology.hpp"
-#include "torus/torus_renderer.hpp"
-#include "torus/torus_time.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/scenes.hpp"
+#include "host/torus/topology.hpp"
+#include "host/torus/torus_renderer.hpp"
+#include "host/torus/torus_time.hpp"
 
 namespace raya {
 

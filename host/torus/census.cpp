@@ -1,4 +1,4 @@
-#include "torus/census.hpp"
+#include "host/torus/census.hpp"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "torus/link_exchange.hpp"
+#include "host/torus/link_exchange.hpp"
 
 namespace raya {
 

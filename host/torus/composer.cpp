@@ -1,4 +1,4 @@
-#include "torus/composer.hpp"
+#include "host/torus/composer.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "cl/kernel_source.hpp"
-#include "error.hpp"
+#include "host/cl/kernel_source.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "shared/packet.h"
+#include "host/cl/commands.hpp"
+#include "kernels/shared/packet.h"
 
 namespace raya {
 

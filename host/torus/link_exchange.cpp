@@ -1,4 +1,4 @@
-#include "torus/link_exchange.hpp"
+#include "host/torus/link_exchange.hpp"
 
 #include <algorithm>
 

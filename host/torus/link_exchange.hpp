@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "shared/traffic.h"
+#include "host/cl/commands.hpp"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
 

@@ -1,9 +1,9 @@
-#include "torus/node_array.hpp"
+#include "host/torus/node_array.hpp"
 
 #include <algorithm>
 
-#include "cl/kernel_source.hpp"
-#include "shared/node_counts.h"
+#include "host/cl/kernel_source.hpp"
+#include "kernels/shared/node_counts.h"
 
 namespace raya {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "machine/machine.hpp"
-#include "torus/link_exchange.hpp"
-#include "torus/node_memory.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/cl/commands.hpp"
+#include "host/machine/machine.hpp"
+#include "host/torus/link_exchange.hpp"
+#include "host/torus/node_memory.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

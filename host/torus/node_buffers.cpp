@@ -5,10 +5,10 @@
 #include <array>
 #include <cstring>
 
-#include "error.hpp"
-#include "shared/packet.h"
-#include "torus/node_memory.hpp"
-#include "torus/topology.hpp"
+#include "host/error.hpp"
+#include "host/torus/node_memory.hpp"
+#include "host/torus/topology.hpp"
+#include "kernels/shared/packet.h"
 
 namespace raya {
 namespace {

@@ -1,5 +1,5 @@
 // Cuts a job's words up into the memories of the torus machine's nodes.
-#include "torus/node_memory.hpp"
+#include "host/torus/node_memory.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "cl/device.hpp"
-#include "grid/partition.hpp"
-#include "scene/packer.hpp"
-#include "shared/node.h"
+#include "host/cl/device.hpp"
+#include "host/grid/partition.hpp"
+#include "host/scene/packer.hpp"
+#include "kernels/shared/node.h"
 
 namespace raya {
 

@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "error.hpp"
-#include "torus/node_memory.hpp"
-#include "torus/topology.hpp"
+#include "host/error.hpp"
+#include "host/torus/node_memory.hpp"
+#include "host/torus/topology.hpp"
 
 namespace raya {
 namespace {

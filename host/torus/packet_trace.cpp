@@ -1,4 +1,4 @@
-#include "torus/packet_trace.hpp"
+#include "host/torus/packet_trace.hpp"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
-#include "report/gzip.hpp"
-#include "torus/ray_numbers.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/report/gzip.hpp"
+#include "host/torus/ray_numbers.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

@@ -1,8 +1,8 @@
-#include "torus/queue_search.hpp"
+#include "host/torus/queue_search.hpp"
 
 #include <fmt/format.h>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,4 @@
-#include "torus/ray_numbers.hpp"
+#include "host/torus/ray_numbers.hpp"
 
 #include <stdexcept>
 

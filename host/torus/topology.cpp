@@ -1,9 +1,9 @@
 // The torus machine's nodes and links: text, and the layout of three sides on a torus of two.
-#include "torus/topology.hpp"
+#include "host/torus/topology.hpp"
 
 #include <fmt/format.h>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

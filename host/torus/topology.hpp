@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "shared/torus.h"
+#include "kernels/shared/torus.h"
 
 namespace raya {
 

@@ -1,14 +1,14 @@
-#include "torus/torus_plan.hpp"
+#include "host/torus/torus_plan.hpp"
 
 #include <fmt/format.h>
 
 #include <cstddef>
 #include <cstring>
 
-#include "error.hpp"
-#include "machine/t805.hpp"
-#include "torus/topology.hpp"
-#include "torus/windows.hpp"
+#include "host/error.hpp"
+#include "host/machine/t805.hpp"
+#include "host/torus/topology.hpp"
+#include "host/torus/windows.hpp"
 
 namespace raya {
 

@@ -2,11 +2,11 @@
 #pragma once
 #include <cstdint>
 
-#include "cl/device.hpp"
-#include "kernels/kernel_options.hpp"
-#include "scene/packer.hpp"
-#include "torus/node_memory.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/cl/device.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/scene/packer.hpp"
+#include "host/torus/node_memory.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

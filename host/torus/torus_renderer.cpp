@@ -1,4 +1,4 @@
-#include "torus/torus_renderer.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "error.hpp"
-#include "machine/t805.hpp"
-#include "torus/census.hpp"
-#include "torus/composer.hpp"
-#include "torus/node_array.hpp"
-#include "torus/queue_search.hpp"
-#include "torus/torus_plan.hpp"
+#include "host/error.hpp"
+#include "host/machine/t805.hpp"
+#include "host/torus/census.hpp"
+#include "host/torus/composer.hpp"
+#include "host/torus/node_array.hpp"
+#include "host/torus/queue_search.hpp"
+#include "host/torus/torus_plan.hpp"
 
 namespace raya {
 namespace {

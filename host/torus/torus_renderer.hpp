@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "grid/partition.hpp"
-#include "image/image.hpp"
-#include "kernels/kernel_options.hpp"
-#include "machine/load.hpp"
-#include "machine/machine.hpp"
-#include "report/progress.hpp"
-#include "scene/packer.hpp"
-#include "scene/scene.hpp"
-#include "shared/packet.h"
-#include "torus/node_memory.hpp"
-#include "torus/topology.hpp"
+#include "host/cl/commands.hpp"
+#include "host/grid/partition.hpp"
+#include "host/image/image.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/machine/load.hpp"
+#include "host/machine/machine.hpp"
+#include "host/report/progress.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
+#include "host/torus/node_memory.hpp"
+#include "host/torus/topology.hpp"
+#include "kernels/shared/packet.h"
 
 namespace raya {
 

@@ -1,9 +1,9 @@
-#include "torus/torus_time.hpp"
+#include "host/torus/torus_time.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "machine/t805.hpp"
+#include "host/machine/t805.hpp"
 
 namespace raya {
 namespace {

@@ -1,7 +1,7 @@
 // Modelled time of a render on a torus of T805s, from what was counted: two bounds, and what makes them.
 #pragma once
-#include "machine/time_model.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/machine/time_model.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

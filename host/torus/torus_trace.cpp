@@ -1,4 +1,4 @@
-#include "torus/torus_trace.hpp"
+#include "host/torus/torus_trace.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <numeric>
 #include <set>
 
-#include "machine/t805.hpp"
-#include "report/traced_pes.hpp"
-#include "torus/packet_trace.hpp"
+#include "host/machine/t805.hpp"
+#include "host/report/traced_pes.hpp"
+#include "host/torus/packet_trace.hpp"
 
 namespace raya {
 namespace {

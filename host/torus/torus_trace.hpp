@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "report/trace_file.hpp"
-#include "scene/split_mix.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/report/trace_file.hpp"
+#include "host/scene/split_mix.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

@@ -1,9 +1,9 @@
-#include "torus/torus_work.hpp"
+#include "host/torus/torus_work.hpp"
 
 #include <numeric>
 #include <utility>
 
-#include "shared/traffic.h"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
 namespace {

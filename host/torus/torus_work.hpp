@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "report/roofline.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/report/roofline.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

@@ -1,11 +1,11 @@
-#include "torus/windows.hpp"
+#include "host/torus/windows.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 namespace {

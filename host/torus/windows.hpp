@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "machine/number_format.hpp"
-#include "shared/node.h"
+#include "host/machine/number_format.hpp"
+#include "kernels/shared/node.h"
 
 namespace raya {
 

@@ -1,8 +1,8 @@
-#include "verify/breakage.hpp"
+#include "host/verify/breakage.hpp"
 
 #include <fmt/format.h>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 

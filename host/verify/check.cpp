@@ -1,4 +1,4 @@
-#include "verify/check.hpp"
+#include "host/verify/check.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <optional>
 
-#include "embedded.hpp"
-#include "grid/accel.hpp"
-#include "scene/nff_reader.hpp"
-#include "scene/packer.hpp"
-#include "scene/split_mix.hpp"
-#include "verify/known_hits.hpp"
-#include "verify/verify.hpp"
-#include "verify/words.hpp"
+#include "host/embedded.hpp"
+#include "host/grid/accel.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/split_mix.hpp"
+#include "host/verify/known_hits.hpp"
+#include "host/verify/verify.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

@@ -4,10 +4,10 @@
 #include <bit>
 #include <optional>
 
-#include "ring/mapping.hpp"
-#include "torus/torus_renderer.hpp"
-#include "verify/pictures.hpp"
-#include "verify/verify.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/torus/torus_renderer.hpp"
+#include "host/verify/pictures.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 namespace {

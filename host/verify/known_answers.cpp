@@ -1,4 +1,4 @@
-#include "verify/known_answers.hpp"
+#include "host/verify/known_answers.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "embedded.hpp"
-#include "verify/words.hpp"
+#include "host/embedded.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

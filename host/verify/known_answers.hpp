@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/number_format.hpp"
+#include "host/machine/number_format.hpp"
 
 namespace raya {
 

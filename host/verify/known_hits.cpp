@@ -1,4 +1,4 @@
-#include "verify/known_hits.hpp"
+#include "host/verify/known_hits.hpp"
 
 namespace raya {
 namespace {

@@ -6,10 +6,10 @@
 #include <bit>
 #include <numeric>
 
-#include "ring/bus.hpp"
-#include "verify/patterns.hpp"
-#include "verify/verify.hpp"
-#include "verify/words.hpp"
+#include "host/ring/bus.hpp"
+#include "host/verify/patterns.hpp"
+#include "host/verify/verify.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

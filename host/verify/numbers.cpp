@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include "verify/known_answers.hpp"
-#include "verify/verify.hpp"
-#include "verify/words.hpp"
+#include "host/verify/known_answers.hpp"
+#include "host/verify/verify.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,4 @@
-#include "verify/own_process.hpp"
+#include "host/verify/own_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
-#include "verify/patterns.hpp"
+#include "host/verify/patterns.hpp"
 
 #include <algorithm>
 
-#include "scene/split_mix.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "ring/mapping.hpp"
-#include "shared/neighbours.h"
-#include "torus/topology.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/torus/topology.hpp"
+#include "kernels/shared/neighbours.h"
 
 namespace raya {
 

@@ -1,4 +1,4 @@
-#include "verify/pictures.hpp"
+#include "host/verify/pictures.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "embedded.hpp"
-#include "ring/mapping.hpp"
-#include "scene/nff_reader.hpp"
-#include "verify/words.hpp"
+#include "host/embedded.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
-#include "machine/number_format.hpp"
-#include "ring/antialias.hpp"
-#include "ring/ring_renderer.hpp"
-#include "scene/scene.hpp"
+#include "host/image/image.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/ring/antialias.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

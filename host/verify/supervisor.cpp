@@ -1,4 +1,4 @@
-#include "verify/supervisor.hpp"
+#include "host/verify/supervisor.hpp"
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "error.hpp"
-#include "verify/own_process.hpp"
+#include "host/error.hpp"
+#include "host/verify/own_process.hpp"
 
 namespace raya {
 namespace {

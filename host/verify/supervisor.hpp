@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "verify/check.hpp"
-#include "verify/verify.hpp"
+#include "host/verify/check.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 

@@ -6,12 +6,12 @@
 #include <numeric>
 #include <optional>
 
-#include "ring/bus.hpp"
-#include "ring/ring.hpp"
-#include "torus/link_exchange.hpp"
-#include "torus/topology.hpp"
-#include "verify/verify.hpp"
-#include "verify/words.hpp"
+#include "host/ring/bus.hpp"
+#include "host/ring/ring.hpp"
+#include "host/torus/link_exchange.hpp"
+#include "host/torus/topology.hpp"
+#include "host/verify/verify.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

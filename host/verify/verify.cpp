@@ -1,6 +1,6 @@
-#include "verify/verify.hpp"
+#include "host/verify/verify.hpp"
 
-#include "cl/kernel_source.hpp"
+#include "host/cl/kernel_source.hpp"
 
 namespace raya {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "cl/device.hpp"
-#include "kernels/kernel_options.hpp"
-#include "verify/breakage.hpp"
-#include "verify/check.hpp"
+#include "host/cl/commands.hpp"
+#include "host/cl/device.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/verify/breakage.hpp"
+#include "host/verify/check.hpp"
 
 namespace raya {
 

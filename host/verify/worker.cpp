@@ -1,4 +1,4 @@
-#include "verify/worker.hpp"
+#include "host/verify/worker.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <nlohmann/json.hpp>
 
-#include "error.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {

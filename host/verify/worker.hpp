@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "verify/verify.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 

@@ -2,8 +2,8 @@
 //
 // Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that what is measured is how many the
 // device can do, not how long one takes. The results are stored so that no compiler leaves the work out.
-#include "number/number.clh"
-#include "shared/chains.h"
+#include "number.clh"
+#include "chains.h"
 
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..64

@@ -6,7 +6,7 @@
 //
 // One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has arrived
 // in its memory, and nothing else.
-#include "ring/arrived.clh"
+#include "kernels/ring/arrived.clh"
 
 static inline real clamped(real a) { return choose(a > 1.0f, num_all(1.0f), num_max(a, num_all(0.0f))); }
 

@@ -9,7 +9,7 @@
 //
 // One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has arrived
 // in its memory, and nothing else.
-#include "ring/arrived.clh"
+#include "kernels/ring/arrived.clh"
 
 // sum += neighbour, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))

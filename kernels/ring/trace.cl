@@ -15,9 +15,9 @@
 // A point's colour is summed in the order of its own ray tree, a pixel's in the order of its points, so the bits do not depend on V,
 // group size, mapping or device.
 // Limits: a PE's share < 2^32 pixels; the cost of one pixel < 2^64 cycles; its events < 2^32 each.
-#include "ring/pixel_store.clh"
-#include "shading/camera.clh"
-#include "shading/shade.clh"
+#include "kernels/ring/pixel_store.clh"
+#include "kernels/shading/camera.clh"
+#include "kernels/shading/shade.clh"
 
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..64

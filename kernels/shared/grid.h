@@ -3,7 +3,7 @@
 // Planes between voxels are fp32 numbers that host and kernels compute alike. Numbers of voxels run along x first, then y, then z.
 #ifndef RAYA_SHARED_GRID_H
 #define RAYA_SHARED_GRID_H
-#include "shared/portable.h"
+#include "kernels/shared/portable.h"
 
 typedef struct {
     float low[3];           // the corner of the box with the lowest coordinates, scene units

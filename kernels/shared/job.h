@@ -6,9 +6,9 @@
 // cones. "at" words are distances from the job's first word.
 #ifndef RAYA_SHARED_JOB_H
 #define RAYA_SHARED_JOB_H
-#include "shared/events.h"
-#include "shared/mapping.h"
-#include "shared/portable.h"
+#include "kernels/shared/events.h"
+#include "kernels/shared/mapping.h"
+#include "kernels/shared/portable.h"
 
 // The objects of a scene, or those of a voxel: how many of each kind, and where the words of the first one start.
 typedef struct {

@@ -21,9 +21,9 @@
 // Legal: 1 <= W, H <= 16384, 1 <= P <= W H, 0 <= p < W. Then j p < 2^28 and c P < 2^42, which is why 64 bits appear.
 #ifndef RAYA_SHARED_MAPPING_H
 #define RAYA_SHARED_MAPPING_H
-#include "shared/portable.h"
-#include "shared/ratios.h"
-#include "shared/scramble.h"
+#include "kernels/shared/portable.h"
+#include "kernels/shared/ratios.h"
+#include "kernels/shared/scramble.h"
 
 #define RAYA_FOLD_CYCLIC 0u
 #define RAYA_FOLD_BLOCK 1u

@@ -1,7 +1,7 @@
 // The four neighbours of a pixel in the image, and the points of a pixel through which primary rays go.
 #ifndef RAYA_SHARED_NEIGHBOURS_H
 #define RAYA_SHARED_NEIGHBOURS_H
-#include "shared/mapping.h"
+#include "kernels/shared/mapping.h"
 
 enum { RAYA_LEFT, RAYA_RIGHT, RAYA_ABOVE, RAYA_BELOW, RAYA_SIDES };
 

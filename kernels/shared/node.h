@@ -7,9 +7,9 @@
 // of an object that touches it; planes are infinite, so all voxels share one copy of all of them.
 #ifndef RAYA_SHARED_NODE_H
 #define RAYA_SHARED_NODE_H
-#include "shared/grid.h"
-#include "shared/job.h"
-#include "shared/torus.h"
+#include "kernels/shared/grid.h"
+#include "kernels/shared/job.h"
+#include "kernels/shared/torus.h"
 
 typedef struct {
     raya_job job;  // job.objects: the planes alone, all that a ray outside the box can hit

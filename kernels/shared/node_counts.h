@@ -1,8 +1,8 @@
 // What the work-items of a node share in local memory while they treat its queue: slots taken and in use, and what is counted.
 #ifndef RAYA_SHARED_NODE_COUNTS_H
 #define RAYA_SHARED_NODE_COUNTS_H
-#include "shared/events.h"
-#include "shared/packet.h"
+#include "kernels/shared/events.h"
+#include "kernels/shared/packet.h"
 
 enum {
     RAYA_SHARED_NEXT,      // slot of the next packet that nobody has taken

@@ -15,7 +15,7 @@
 // those of all that follows its reflected ray, then its refracted ray.
 #ifndef RAYA_SHARED_PACKET_H
 #define RAYA_SHARED_PACKET_H
-#include "shared/torus.h"
+#include "kernels/shared/torus.h"
 
 enum {
     RAYA_PACKET_PIXEL = 0,   // row * W + column

@@ -1,7 +1,7 @@
 // Whole numbers divided up, where products need more than 32 bits: the mapping's arithmetic.
 #ifndef RAYA_SHARED_RATIOS_H
 #define RAYA_SHARED_RATIOS_H
-#include "shared/portable.h"
+#include "kernels/shared/portable.h"
 
 // ceil(a b / c)
 RAYA_SHARED_FUNCTION raya_u32 raya_ceil_ratio(raya_u32 a, raya_u32 b, raya_u32 c) {

@@ -6,7 +6,7 @@
 // half of the network's numbers lie inside. 1 <= count <= 2^28.
 #ifndef RAYA_SHARED_SCRAMBLE_H
 #define RAYA_SHARED_SCRAMBLE_H
-#include "shared/portable.h"
+#include "kernels/shared/portable.h"
 
 #define RAYA_SCRAMBLE_ROUNDS 6u
 

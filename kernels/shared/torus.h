@@ -11,7 +11,7 @@
 // round each; of two ways of equal length, the one towards higher numbers. Returns go by raya_home_link.
 #ifndef RAYA_SHARED_TORUS_H
 #define RAYA_SHARED_TORUS_H
-#include "shared/grid.h"
+#include "kernels/shared/grid.h"
 
 // Links of a node: link 2 d leads to the next higher number along side d, link 2 d + 1 to the next lower one.
 #define RAYA_LINKS 6u

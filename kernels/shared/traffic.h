@@ -10,7 +10,7 @@
 // those ways are a tree, and the host takes what comes to its root. So returns never stand still, whatever rays do.
 #ifndef RAYA_SHARED_TRAFFIC_H
 #define RAYA_SHARED_TRAFFIC_H
-#include "shared/packet.h"
+#include "kernels/shared/packet.h"
 
 enum {
     RAYA_STATUS_QUEUE = 0,      // packets in the queue

@@ -3,7 +3,7 @@
 // until it is empty.
 //
 // One work-group is one node. The inboxes are looked through one after another, another one first in every superstep; of each, L packets at a time.
-#include "torus/moves.clh"
+#include "kernels/torus/moves.clh"
 
 #define RAYA_TAKEN 0u  // goals
 #define RAYA_LEFT_THERE 1u

@@ -3,7 +3,7 @@
 //     pixel = c1 w1, then c2 w2 + pixel, and so on, each step rounded once, as the ring machine adds them (kernels/README.md, Shading)
 //
 // Work-item i of n takes pixels i, i + n, ... One lane.
-#include "geometry/vec.clh"
+#include "kernels/geometry/vec.clh"
 
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..64

@@ -11,8 +11,8 @@
 //
 // Rays are made until an eighth of the queue is in use, and never in the room that a ray's tree asks for: packets that arrive and packets that hits turn
 // into find room.
-#include "shading/camera.clh"
-#include "torus/flight.clh"
+#include "kernels/shading/camera.clh"
+#include "kernels/torus/flight.clh"
 
 #define RAYA_STEP (RAYA_GROUP * RAYA_LANES)
 

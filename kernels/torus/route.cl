@@ -8,8 +8,8 @@
 //     close the gaps that were left in the queue
 //
 // The rules of the ways are raya_next_link's and raya_home_link's (kernels/shared/torus.h).
-#include "shared/node_counts.h"
-#include "torus/moves.clh"
+#include "kernels/shared/node_counts.h"
+#include "kernels/torus/moves.clh"
 
 // Where a packet of this node goes.
 static inline uint goal_of(const node* n, uint16 packet) {

@@ -13,8 +13,8 @@
 // Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across a voxel's side (kernels/grid/walk.clh). They visit
 // all voxels in the order of their numbers, remember where their nearest hit was found, and are shaded there.
 // Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64.
-#include "torus/outcome.clh"
-#include "torus/shade_packets.clh"
+#include "kernels/torus/outcome.clh"
+#include "kernels/torus/shade_packets.clh"
 
 // The lanes of m whose packets have room for what they may turn into, and how much is reserved for them.
 static inline mask reserve(const node* n, const flight* f, mask m, uint capacity, uint tight, uint* reserved) {

@@ -1,8 +1,8 @@
 // What kernels compute of the machines beside numbers: owners of pixels, ways through the torus, words in local memory. The host computes the
 // same with the same headers; all of it is exact.
-#include "shared/mapping.h"
-#include "shared/neighbours.h"
-#include "shared/torus.h"
+#include "kernels/shared/mapping.h"
+#include "kernels/shared/neighbours.h"
+#include "kernels/shared/torus.h"
 
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: work-items in a work-group of `turn_round`, 1..64

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "error.hpp"
-#include "scene/split_mix.hpp"
+#include "host/cl/commands.hpp"
+#include "host/error.hpp"
+#include "host/scene/split_mix.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/device.hpp"
-#include "cl/error_names.hpp"
+#include "host/cl/device.hpp"
+#include "host/cl/error_names.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "cl/kernel_source.hpp"
-#include "error.hpp"
-#include "report/scratch_folder.hpp"
+#include "host/cl/commands.hpp"
+#include "host/cl/kernel_source.hpp"
+#include "host/error.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 using namespace raya;
 using Catch::Contains;

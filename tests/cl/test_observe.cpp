@@ -1,9 +1,9 @@
 // What a session tells an observer: builds, arguments of launches, and how the device's clock lies.
 #include <catch2/catch.hpp>
 
-#include "cl/clock_anchor.hpp"
-#include "cl/commands.hpp"
-#include "scene/split_mix.hpp"
+#include "host/cl/clock_anchor.hpp"
+#include "host/cl/commands.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "error.hpp"
+#include "host/cl/commands.hpp"
+#include "host/error.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "cli/run_program.hpp"
+#include "tests/cli/run_program.hpp"
 
 namespace raya {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/run_program.hpp"
-#include "report/scratch_folder.hpp"
+#include "tests/cli/run_program.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 

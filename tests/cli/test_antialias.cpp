@@ -3,10 +3,10 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "cli/refusals.hpp"
-#include "cli/render_files.hpp"
-#include "cli/report_keys.hpp"
-#include "image/image_io.hpp"
+#include "host/image/image_io.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/cli/render_files.hpp"
+#include "tests/cli/report_keys.hpp"
 
 namespace raya {
 namespace {

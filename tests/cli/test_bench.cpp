@@ -1,8 +1,8 @@
 // raya bench against an earlier report: what it writes, what it holds against what, and its exit codes.
 #include <fstream>
 
-#include "cli/refusals.hpp"
-#include "cli/render_files.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/cli/render_files.hpp"
 
 namespace raya {
 namespace {

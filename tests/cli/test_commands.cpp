@@ -3,7 +3,7 @@
 #include <sstream>
 #include <utility>
 
-#include "cli/render_files.hpp"
+#include "tests/cli/render_files.hpp"
 
 namespace raya {
 namespace {

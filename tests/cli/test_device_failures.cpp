@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "cli/refusals.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <utility>
 
-#include "cli/failing_device.hpp"
-#include "cli/refusals.hpp"
+#include "tests/cli/failing_device.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

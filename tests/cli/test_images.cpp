@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "cli/render_files.hpp"
+#include "tests/cli/render_files.hpp"
 
 namespace raya {
 namespace {

@@ -3,8 +3,8 @@
 #include <sstream>
 #include <utility>
 
-#include "cli/failing_device.hpp"
-#include "cli/refusals.hpp"
+#include "tests/cli/failing_device.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

@@ -1,7 +1,7 @@
 // The modelled figures of a report, worked out again from what else it says.
 #include <numeric>
 
-#include "cli/render_files.hpp"
+#include "tests/cli/render_files.hpp"
 
 namespace raya {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "cli/refusals.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cli/refusals.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

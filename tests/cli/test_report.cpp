@@ -5,10 +5,10 @@
 #include <numeric>
 #include <set>
 
-#include "cli/render_files.hpp"
-#include "cli/report_keys.hpp"
-#include "image/image_io.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/image/image_io.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "tests/cli/render_files.hpp"
+#include "tests/cli/report_keys.hpp"
 
 namespace raya {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/refusals.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

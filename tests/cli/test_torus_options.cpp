@@ -1,5 +1,5 @@
 // The torus's options: what the program refuses before it renders, and what its help says.
-#include "cli/refusals.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

@@ -1,10 +1,10 @@
 // The traces that the program writes: each by the schema, and against the report of the same run.
 #include <map>
 
-#include "cli/render_files.hpp"
-#include "report/gunzip.hpp"
-#include "report/trace_file.hpp"
-#include "report/trace_schema.hpp"
+#include "host/report/trace_file.hpp"
+#include "tests/cli/render_files.hpp"
+#include "tests/report/gunzip.hpp"
+#include "tests/report/trace_schema.hpp"
 
 namespace raya {
 namespace {

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cli/failing_device.hpp"
-#include "cli/refusals.hpp"
+#include "tests/cli/failing_device.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 

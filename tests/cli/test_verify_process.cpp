@@ -5,8 +5,8 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "cli/failing_device.hpp"
-#include "cli/refusals.hpp"
+#include "tests/cli/failing_device.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 namespace {

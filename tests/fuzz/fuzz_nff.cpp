@@ -8,11 +8,11 @@
 #include <string>
 #include <string_view>
 
-#include "error.hpp"
-#include "scene/nff_reader.hpp"
-#include "scene/nff_writer.hpp"
-#include "scene/polygon_plane.hpp"
-#include "scene/triangulate.hpp"
+#include "host/error.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/triangulate.hpp"
 
 namespace {
 

@@ -6,13 +6,13 @@
 #include <numbers>
 #include <vector>
 
-#include "grid/random_walks.hpp"
-#include "kernels/random_scene.hpp"
-#include "machine/number_format.hpp"
-#include "reference/reference.hpp"
-#include "scene/polygon_plane.hpp"
-#include "scene/scene.hpp"
-#include "scene/split_mix.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/scene.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/grid/random_walks.hpp"
+#include "tests/kernels/random_scene.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya {
 

@@ -4,10 +4,10 @@
 #include <cstring>
 #include <vector>
 
-#include "grid/aimed_rays.hpp"
-#include "kernels/kernel_runner.hpp"
-#include "kernels/probe.hpp"
-#include "scene/packer.hpp"
+#include "host/scene/packer.hpp"
+#include "tests/grid/aimed_rays.hpp"
+#include "tests/kernels/kernel_runner.hpp"
+#include "tests/kernels/probe.hpp"
 
 namespace raya {
 

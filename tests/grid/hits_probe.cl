@@ -1,6 +1,6 @@
 // Hits of one object alone. A work-group is one work-item, which takes the next V rays; `rays` holds origin, direction and limit of each:
 // [ray][7]. Sixteen rays in a row are for the same object; their number is a multiple of 16.
-#include "geometry/scene.clh"
+#include "kernels/geometry/scene.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void hits_of_one(__global const uint* restrict job,

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "grid/hits_of_one.hpp"
-#include "grid/partition.hpp"
-#include "grid/random_walks.hpp"
+#include "host/grid/partition.hpp"
+#include "tests/grid/hits_of_one.hpp"
+#include "tests/grid/random_walks.hpp"
 
 namespace raya {
 

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "grid/partition.hpp"
-#include "kernels/random_scene.hpp"
-#include "reference/reference.hpp"
-#include "scene/fp32.hpp"
-#include "scene/split_mix.hpp"
-#include "shared/grid.h"
+#include "host/grid/partition.hpp"
+#include "host/scene/split_mix.hpp"
+#include "kernels/shared/grid.h"
+#include "tests/kernels/random_scene.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/scene/fp32.hpp"
 
 namespace raya {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "reference/reference.hpp"
-#include "shared/grid.h"
+#include "kernels/shared/grid.h"
+#include "tests/reference/reference.hpp"
 
 namespace raya {
 

@@ -1,5 +1,5 @@
 // The walk through a grid as the ring's lanes take it (kernels/grid/stepper.clh), voxel by voxel; buffers as in walk_probe.cl.
-#include "grid/stepper.clh"
+#include "kernels/grid/stepper.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void stepped_walks(__global const raya_grid* restrict grid,

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "grid/accel.hpp"
-#include "grid/partition_lists.hpp"
+#include "host/grid/accel.hpp"
+#include "tests/grid/partition_lists.hpp"
 
 namespace raya {
 namespace {

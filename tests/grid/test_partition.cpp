@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include "error.hpp"
-#include "grid/hit_regions.hpp"
-#include "grid/partition.hpp"
-#include "grid/partition_lists.hpp"
+#include "host/error.hpp"
+#include "host/grid/hit_regions.hpp"
+#include "host/grid/partition.hpp"
+#include "tests/grid/partition_lists.hpp"
 
 namespace raya {
 namespace {

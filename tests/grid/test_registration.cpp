@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "grid/hit_regions.hpp"
-#include "grid/partition_lists.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/grid/hit_regions.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "tests/grid/partition_lists.hpp"
 
 namespace raya {
 namespace {

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "grid/random_walks.hpp"
-#include "kernels/kernel_runner.hpp"
-#include "kernels/probe.hpp"
+#include "tests/grid/random_walks.hpp"
+#include "tests/kernels/kernel_runner.hpp"
+#include "tests/kernels/probe.hpp"
 
 namespace raya {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <set>
 
-#include "grid/random_walks.hpp"
-#include "grid/reference_walk.hpp"
-#include "kernels/kernel_runner.hpp"
-#include "kernels/probe.hpp"
+#include "tests/grid/random_walks.hpp"
+#include "tests/grid/reference_walk.hpp"
+#include "tests/kernels/kernel_runner.hpp"
+#include "tests/kernels/probe.hpp"
 
 namespace raya {
 namespace {

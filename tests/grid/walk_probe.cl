@@ -1,6 +1,6 @@
 // The walk through a grid (kernels/grid/walk.clh), voxel by voxel. A work-group is one work-item, which takes the next V rays; `rays` holds
 // origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
-#include "grid/walk.clh"
+#include "kernels/grid/walk.clh"
 
 static inline ray load_ray(__global const float* rays, uint first) {
     __global const float* from = rays + first * 7;

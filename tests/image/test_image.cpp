@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "image/image.hpp"
+#include "host/image/image.hpp"
 
 namespace raya {
 namespace {

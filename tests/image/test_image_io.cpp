@@ -13,10 +13,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "error.hpp"
-#include "image/image_io.hpp"
-#include "image/srgb.hpp"
-#include "report/scratch_folder.hpp"
+#include "host/error.hpp"
+#include "host/image/image_io.hpp"
+#include "host/image/srgb.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "reference/reference.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya {
 

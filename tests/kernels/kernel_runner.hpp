@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "cl/kernel_source.hpp"
-#include "kernels/kernel_options.hpp"
+#include "host/cl/commands.hpp"
+#include "host/cl/kernel_source.hpp"
+#include "host/kernels/kernel_options.hpp"
 
 namespace raya {
 

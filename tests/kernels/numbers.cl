@@ -1,6 +1,6 @@
 // The number layer by itself. A work-group is one work-item, which takes the next V rows of numbers; there are a multiple
 // of V of them.
-#include "number/power.clh"
+#include "kernels/number/power.clh"
 
 static inline void store_bits(__global uint* to, uint stride, real value) {
     store_index(to, stride, as_lanes_uint(value));

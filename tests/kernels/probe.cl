@@ -1,6 +1,6 @@
 // What the geometry and shading headers make of given rays. A work-group is one work-item, which takes the next V rays;
 // `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
-#include "shading/shade.clh"
+#include "kernels/shading/shade.clh"
 
 static inline void store_ray(__global float* to, uint stride, const tree_ray* r) {
     store_vec(to, stride, vec_of_lanes(r->origin));

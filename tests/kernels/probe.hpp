@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/kernel_runner.hpp"
-#include "reference/reference.hpp"
-#include "scene/packer.hpp"
+#include "host/scene/packer.hpp"
+#include "tests/kernels/kernel_runner.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "reference/reference.hpp"
-#include "scene/fp32.hpp"
-#include "scene/polygon_plane.hpp"
-#include "scene/scene.hpp"
-#include "scene/split_mix.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/scene.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/scene/fp32.hpp"
 
 namespace raya {
 

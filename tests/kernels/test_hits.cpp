@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "kernels/agreement.hpp"
-#include "kernels/probe.hpp"
-#include "kernels/random_scene.hpp"
+#include "tests/kernels/agreement.hpp"
+#include "tests/kernels/probe.hpp"
+#include "tests/kernels/random_scene.hpp"
 
 namespace raya {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "kernels/kernel_options.hpp"
+#include "host/error.hpp"
+#include "host/kernels/kernel_options.hpp"
 
 using namespace raya;
 using Catch::Contains;

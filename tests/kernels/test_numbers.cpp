@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "kernels/kernel_runner.hpp"
-#include "scene/split_mix.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/kernels/kernel_runner.hpp"
 
 namespace raya {
 namespace {

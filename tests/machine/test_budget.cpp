@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "machine/budget.hpp"
-#include "scene/split_mix.hpp"
+#include "host/machine/budget.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "machine/load.hpp"
+#include "host/machine/load.hpp"
 
 using namespace raya;
 

@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "error.hpp"
-#include "machine/machine.hpp"
+#include "host/error.hpp"
+#include "host/machine/machine.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "error.hpp"
-#include "machine/number_format.hpp"
-#include "number/mpfr_oracle.hpp"
-#include "scene/split_mix.hpp"
+#include "host/error.hpp"
+#include "host/machine/number_format.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/number/mpfr_oracle.hpp"
 
 namespace raya {
 namespace {

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 
-#include "machine/budget.hpp"
-#include "machine/t805.hpp"
-#include "scene/split_mix.hpp"
+#include "host/machine/budget.hpp"
+#include "host/machine/t805.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "machine/budget.hpp"
-#include "machine/time_model.hpp"
-#include "scene/split_mix.hpp"
+#include "host/machine/budget.hpp"
+#include "host/machine/time_model.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {

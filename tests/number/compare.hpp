@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "number/mpfr_oracle.hpp"
-#include "number/number_runner.hpp"
+#include "tests/number/mpfr_oracle.hpp"
+#include "tests/number/number_runner.hpp"
 
 namespace raya {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "machine/number_format.hpp"
+#include "host/machine/number_format.hpp"
 
 namespace raya {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "cl/kernel_source.hpp"
-#include "machine/number_format.hpp"
+#include "host/cl/commands.hpp"
+#include "host/cl/kernel_source.hpp"
+#include "host/machine/number_format.hpp"
 
 namespace raya {
 

@@ -2,7 +2,7 @@
 // multiple of V. Everything lies column by column: operand k of row i at k * rows + i, bits of result k of row i likewise.
 //
 // RAYA_TEST_DEVICE_ERROR stands in for a device whose division errs by up to 2 units in the last place and whose square root by up to 3.
-#include "number/lanes.clh"
+#include "kernels/number/lanes.clh"
 
 #ifdef RAYA_TEST_DEVICE_ERROR
 // A number up to `reach` units away from z, by the operands' bits. Only where z is certainly normal: the layer refines no others.
@@ -18,7 +18,7 @@ static inline real erring_root(real a) { return err_by(sqrt(a), as_lanes_int(a),
 #define RAYA_DEVICE_SQRT(a) erring_root(a)
 #endif
 
-#include "number/power.clh"
+#include "kernels/number/power.clh"
 
 static inline real operand(__global const float* operands, uint rows, uint k) {
     return *(__global const real*)(operands + k * rows + get_group_id(0) * RAYA_LANES);

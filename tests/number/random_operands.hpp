@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "number/mpfr_oracle.hpp"
-#include "number/number_runner.hpp"
-#include "scene/split_mix.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/number/mpfr_oracle.hpp"
+#include "tests/number/number_runner.hpp"
 
 namespace raya {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "number/compare.hpp"
-#include "number/random_operands.hpp"
+#include "tests/number/compare.hpp"
+#include "tests/number/random_operands.hpp"
 
 namespace raya {
 namespace {

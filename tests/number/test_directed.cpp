@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "number/compare.hpp"
+#include "tests/number/compare.hpp"
 
 namespace raya {
 namespace {

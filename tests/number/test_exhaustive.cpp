@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "number/compare.hpp"
-#include "scene/split_mix.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/number/compare.hpp"
 
 namespace raya {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "number/compare.hpp"
-#include "number/random_operands.hpp"
+#include "tests/number/compare.hpp"
+#include "tests/number/random_operands.hpp"
 
 namespace raya {
 namespace {

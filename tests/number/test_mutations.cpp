@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "number/compare.hpp"
-#include "number/random_operands.hpp"
-#include "report/scratch_folder.hpp"
+#include "tests/number/compare.hpp"
+#include "tests/number/random_operands.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
+#include "host/cl/commands.hpp"
 
 namespace {
 using namespace raya;

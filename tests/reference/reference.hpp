@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya::reference {
 

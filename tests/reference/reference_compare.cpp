@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "reference/reference.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya::reference {
 namespace {

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "reference/reference.hpp"
-#include "scene/polygon_plane.hpp"
-#include "scene/triangulate.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/triangulate.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya::reference {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <thread>
 
-#include "reference/reference.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya::reference {
 namespace {

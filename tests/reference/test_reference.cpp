@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "reference/reference.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya::reference {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "reference/reference.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya::reference {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <random>
 
-#include "reference/reference.hpp"
-#include "scene/polygon_plane.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace raya::reference {
 namespace {

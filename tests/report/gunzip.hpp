@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "report/scratch_folder.hpp"
-#include "report/whole_file.hpp"
+#include "host/report/whole_file.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "error.hpp"
-#include "report/bench_compare.hpp"
-#include "report/scratch_folder.hpp"
+#include "host/error.hpp"
+#include "host/report/bench_compare.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 namespace {

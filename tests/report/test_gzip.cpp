@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "report/gunzip.hpp"
-#include "report/gzip.hpp"
-#include "scene/split_mix.hpp"
+#include "host/report/gzip.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/report/gunzip.hpp"
 
 namespace raya {
 namespace {

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "report/interruption.hpp"
-#include "report/scratch_folder.hpp"
-#include "report/whole_file.hpp"
+#include "host/report/interruption.hpp"
+#include "host/report/whole_file.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 namespace {

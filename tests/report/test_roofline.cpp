@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "machine/budget.hpp"
-#include "report/profile_table.hpp"
-#include "report/roofline.hpp"
+#include "host/machine/budget.hpp"
+#include "host/report/profile_table.hpp"
+#include "host/report/roofline.hpp"
 
 namespace raya {
 namespace {

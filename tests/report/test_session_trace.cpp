@@ -1,9 +1,9 @@
 // Host steps and device commands in a trace: their times, whatever the device's clock says.
 #include <catch2/catch.hpp>
 
-#include "report/session_trace.hpp"
-#include "report/trace_schema.hpp"
-#include "scene/split_mix.hpp"
+#include "host/report/session_trace.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/report/trace_schema.hpp"
 
 namespace raya {
 namespace {

@@ -1,7 +1,7 @@
 // Plain text tables.
 #include <catch2/catch.hpp>
 
-#include "report/table.hpp"
+#include "host/report/table.hpp"
 
 using namespace raya;
 

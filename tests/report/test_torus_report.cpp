@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "report/render_report.hpp"
+#include "host/report/render_report.hpp"
 
 namespace raya {
 namespace {

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "report/gunzip.hpp"
-#include "report/trace_file.hpp"
-#include "report/trace_schema.hpp"
-#include "scene/split_mix.hpp"
+#include "host/report/trace_file.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/report/gunzip.hpp"
+#include "tests/report/trace_schema.hpp"
 
 namespace raya {
 namespace {

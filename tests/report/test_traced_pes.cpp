@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "report/traced_pes.hpp"
-#include "scene/split_mix.hpp"
+#include "host/report/traced_pes.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 

@@ -10,9 +10,9 @@
 #include <iterator>
 #include <string>
 
-#include "error.hpp"
-#include "report/scratch_folder.hpp"
-#include "report/whole_file.hpp"
+#include "host/error.hpp"
+#include "host/report/whole_file.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include "scene/packer.hpp"
-#include "scene/scene.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shared/mapping.h"
+#include "kernels/shared/mapping.h"
 
 namespace raya {
 

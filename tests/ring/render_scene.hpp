@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "kernels/kernel_options.hpp"
-#include "ring/mapping.hpp"
-#include "ring/ring_renderer.hpp"
-#include "scene/nff_reader.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/nff_reader.hpp"
 
 namespace raya {
 

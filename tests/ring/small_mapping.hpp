@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "scene/random_below.hpp"
-#include "scene/split_mix.hpp"
-#include "shared/mapping.h"
+#include "host/scene/split_mix.hpp"
+#include "kernels/shared/mapping.h"
+#include "tests/scene/random_below.hpp"
 
 namespace raya {
 

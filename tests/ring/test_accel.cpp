@@ -1,10 +1,10 @@
 // The grid of a PE decides which objects are tested, never what comes out (`--accel grid`).
 #include <catch2/catch.hpp>
 
-#include "error.hpp"
-#include "ring/render_scene.hpp"
-#include "scene/generate.hpp"
-#include "torus/render_torus.hpp"
+#include "host/error.hpp"
+#include "host/scene/generate.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {

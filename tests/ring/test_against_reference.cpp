@@ -3,9 +3,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "reference/reference.hpp"
-#include "ring/render_scene.hpp"
-#include "scene/generate.hpp"
+#include "host/scene/generate.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/ring/render_scene.hpp"
 
 namespace raya {
 

@@ -6,10 +6,10 @@
 #include <map>
 #include <tuple>
 
-#include "ring/grid_scene.hpp"
-#include "ring/render_scene.hpp"
-#include "ring/small_mapping.hpp"
-#include "ring/whole_image.hpp"
+#include "tests/ring/grid_scene.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/ring/small_mapping.hpp"
+#include "tests/ring/whole_image.hpp"
 
 namespace raya {
 namespace {

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "ring/grid_scene.hpp"
-#include "ring/render_scene.hpp"
-#include "ring/small_mapping.hpp"
+#include "tests/ring/grid_scene.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 namespace raya {
 namespace {

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "error.hpp"
-#include "ring/schedule.hpp"
-#include "scene/split_mix.hpp"
-#include "small_mapping.hpp"
+#include "host/error.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
 using Catch::Contains;

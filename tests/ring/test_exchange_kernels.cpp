@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "cl/commands.hpp"
-#include "cl/kernel_source.hpp"
-#include "kernels/kernel_options.hpp"
-#include "ring/mapping.hpp"
-#include "ring/route.hpp"
-#include "ring/small_mapping.hpp"
-#include "shared/job.h"
+#include "host/cl/commands.hpp"
+#include "host/cl/kernel_source.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/route.hpp"
+#include "kernels/shared/job.h"
+#include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
 

@@ -1,7 +1,7 @@
 // Scenes whose images are known beforehand, through the kernels.
 #include <catch2/catch.hpp>
 
-#include "ring/render_scene.hpp"
+#include "tests/ring/render_scene.hpp"
 
 namespace raya {
 namespace {

@@ -2,8 +2,8 @@
 // pixel, are the same events.
 #include <catch2/catch.hpp>
 
-#include "ring/render_scene.hpp"
-#include "ring/schedule.hpp"
+#include "host/ring/schedule.hpp"
+#include "tests/ring/render_scene.hpp"
 
 namespace raya {
 TEST_CASE("each PE's load is the sum of its pixels' costs, in every phase", "[ring]") {

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
-#include "ring/mapping.hpp"
-#include "ring/mapping_laws.hpp"
-#include "ring/small_mapping.hpp"
+#include "host/ring/mapping.hpp"
+#include "tests/ring/mapping_laws.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
 

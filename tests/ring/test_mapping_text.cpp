@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "error.hpp"
-#include "ring/mapping.hpp"
-#include "ring/small_mapping.hpp"
+#include "host/error.hpp"
+#include "host/ring/mapping.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "ring/render_scene.hpp"
+#include "tests/ring/render_scene.hpp"
 
 namespace raya {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "error.hpp"
-#include "ring/pe_memory.hpp"
-#include "scene/split_mix.hpp"
+#include "host/error.hpp"
+#include "host/ring/pe_memory.hpp"
+#include "host/scene/split_mix.hpp"
 
 using namespace raya;
 using Catch::Contains;

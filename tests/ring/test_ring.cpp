@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "ring/mapping.hpp"
-#include "ring/neighbour_exchange.hpp"
-#include "ring/ring.hpp"
-#include "ring/small_mapping.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/ring.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
 

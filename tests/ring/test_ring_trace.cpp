@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "machine/budget.hpp"
-#include "report/trace_schema.hpp"
-#include "ring/render_scene.hpp"
-#include "ring/ring_trace.hpp"
-#include "ring/ring_work.hpp"
-#include "scene/random_below.hpp"
-#include "scene/split_mix.hpp"
+#include "host/machine/budget.hpp"
+#include "host/ring/ring_trace.hpp"
+#include "host/ring/ring_work.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/report/trace_schema.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/scene/random_below.hpp"
 
 namespace raya {
 namespace {

@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
-#include "ring/mapping.hpp"
-#include "ring/neighbour_exchange.hpp"
-#include "ring/route.hpp"
-#include "ring/small_mapping.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/route.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
 

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
-#include "ring/schedule.hpp"
-#include "scene/split_mix.hpp"
-#include "small_mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "ring/render_scene.hpp"
-#include "scene/generate.hpp"
+#include "host/scene/generate.hpp"
+#include "tests/ring/render_scene.hpp"
 
 namespace raya {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/image.hpp"
-#include "machine/number_format.hpp"
+#include "host/image/image.hpp"
+#include "host/machine/number_format.hpp"
 
 namespace raya::whole_image {
 

@@ -1,6 +1,6 @@
 // Numbers of a scene as fp32 holds them.
 #pragma once
-#include "scene/scene.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

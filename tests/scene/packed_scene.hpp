@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "scene/packer.hpp"
-#include "scene/scene.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "scene/split_mix.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 

@@ -3,10 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "cli/run_program.hpp"
-#include "ring/mapping.hpp"
-#include "ring/ring_renderer.hpp"
-#include "study/scenes.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/study/scenes.hpp"
+#include "tests/cli/run_program.hpp"
 
 namespace raya {
 namespace {

@@ -9,11 +9,11 @@
 #include <tuple>
 #include <vector>
 
-#include "error.hpp"
-#include "scene/generate.hpp"
-#include "scene/nff_reader.hpp"
-#include "scene/nff_writer.hpp"
-#include "scene/split_mix.hpp"
+#include "host/error.hpp"
+#include "host/scene/generate.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
+#include "host/scene/split_mix.hpp"
 
 using namespace raya;
 

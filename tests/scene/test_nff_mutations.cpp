@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "error.hpp"
-#include "scene/nff_reader.hpp"
-#include "scene/nff_writer.hpp"
-#include "scene/split_mix.hpp"
+#include "host/error.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
+#include "host/scene/split_mix.hpp"
 
 using namespace raya;
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "scene/nff_reader.hpp"
-#include "scene/nff_writer.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
 
 using namespace raya;
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "scene/nff_reader.hpp"
-#include "scene/nff_writer.hpp"
+#include "host/error.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
 
 using namespace raya;
 

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "reference/reference.hpp"
-#include "scene/fp32.hpp"
-#include "scene/nff_reader.hpp"
-#include "scene/packed_scene.hpp"
-#include "scene/polygon_plane.hpp"
-#include "scene/triangulate.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/triangulate.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/scene/fp32.hpp"
+#include "tests/scene/packed_scene.hpp"
 
 using namespace raya;
 

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "scene/polygon_plane.hpp"
-#include "scene/triangulate.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/triangulate.hpp"
 
 namespace raya {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "study/page.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

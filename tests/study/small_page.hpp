@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "study/page.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "ring/cost_image.hpp"
-#include "study/page.hpp"
+#include "host/ring/cost_image.hpp"
+#include "host/study/page.hpp"
 
 namespace raya {
 

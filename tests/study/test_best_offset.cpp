@@ -5,11 +5,11 @@
 #include <limits>
 #include <map>
 
-#include "ring/mapping.hpp"
-#include "ring/schedule.hpp"
-#include "study/offset_times.hpp"
-#include "study/page_shape.hpp"
-#include "study/studies.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/offset_times.hpp"
+#include "host/study/studies.hpp"
+#include "tests/study/page_shape.hpp"
 
 namespace raya {
 namespace {

@@ -3,13 +3,13 @@
 
 #include <random>
 
-#include "machine/t805.hpp"
-#include "scene/generate.hpp"
-#include "study/divisions.hpp"
-#include "study/grid_papers.hpp"
-#include "study/page_shape.hpp"
-#include "study/studies.hpp"
-#include "study_cases.hpp"
+#include "host/machine/t805.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/divisions.hpp"
+#include "host/study/grid_papers.hpp"
+#include "host/study/studies.hpp"
+#include "tests/study/page_shape.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {

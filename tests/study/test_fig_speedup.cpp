@@ -1,10 +1,10 @@
 // Fig. 9: every figure against plain sums, and what the page says of each kind of image.
 #include <cmath>
 
-#include "study/fig_speedup.hpp"
-#include "study/page_writer.hpp"
-#include "study/studies.hpp"
-#include "study_cases.hpp"
+#include "host/study/fig_speedup.hpp"
+#include "host/study/page_writer.hpp"
+#include "host/study/studies.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {

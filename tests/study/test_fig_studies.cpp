@@ -5,10 +5,10 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 
-#include "cl/device.hpp"
-#include "shared/mapping.h"
-#include "study/paper.hpp"
-#include "study/studies.hpp"
+#include "host/cl/device.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/studies.hpp"
+#include "kernels/shared/mapping.h"
 
 namespace raya {
 namespace {

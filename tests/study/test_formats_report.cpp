@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "study/formats_findings.hpp"
-#include "study/formats_report.hpp"
+#include "host/study/formats_findings.hpp"
+#include "host/study/formats_report.hpp"
 
 namespace raya {
 namespace {

@@ -2,9 +2,9 @@
 // number formats.
 #include <catch2/catch.hpp>
 
-#include "reference/reference.hpp"
-#include "ring/render_scene.hpp"
-#include "study/formats_study.hpp"
+#include "host/study/formats_study.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/ring/render_scene.hpp"
 
 namespace raya {
 namespace {

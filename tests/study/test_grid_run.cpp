@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "machine/t805.hpp"
-#include "scene/generate.hpp"
-#include "study/grid_run.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/machine/t805.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/grid_run.hpp"
+#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 namespace {

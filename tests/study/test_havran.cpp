@@ -3,11 +3,11 @@
 
 #include <random>
 
-#include "scene/generate.hpp"
-#include "study/havran.hpp"
-#include "study/page_shape.hpp"
-#include "study/studies.hpp"
-#include "study_cases.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/havran.hpp"
+#include "host/study/studies.hpp"
+#include "tests/study/page_shape.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "study/image_difference.hpp"
+#include "host/study/image_difference.hpp"
 
 namespace raya {
 namespace {

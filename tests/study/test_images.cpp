@@ -2,10 +2,10 @@
 #include <cmath>
 #include <list>
 
-#include "study/images.hpp"
-#include "study/page_writer.hpp"
-#include "study/studies.hpp"
-#include "study_cases.hpp"
+#include "host/study/images.hpp"
+#include "host/study/page_writer.hpp"
+#include "host/study/studies.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {

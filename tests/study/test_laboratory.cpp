@@ -4,9 +4,9 @@
 #include <numeric>
 #include <set>
 
-#include "ring/render_scene.hpp"
-#include "ring/schedule.hpp"
-#include "study/laboratory.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/laboratory.hpp"
+#include "tests/ring/render_scene.hpp"
 
 namespace raya {
 namespace {

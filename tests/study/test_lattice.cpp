@@ -2,10 +2,10 @@
 #include <cmath>
 #include <list>
 
-#include "study/lattice.hpp"
-#include "study/page_writer.hpp"
-#include "study/studies.hpp"
-#include "study_cases.hpp"
+#include "host/study/lattice.hpp"
+#include "host/study/page_writer.hpp"
+#include "host/study/studies.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {

@@ -2,14 +2,14 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "machine/budget.hpp"
-#include "ring/mapping.hpp"
-#include "ring/route.hpp"
-#include "ring/small_mapping.hpp"
-#include "study/measured.hpp"
-#include "study/offset_times.hpp"
-#include "study/paper.hpp"
-#include "study/spa_times.hpp"
+#include "host/machine/budget.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/route.hpp"
+#include "host/study/measured.hpp"
+#include "host/study/offset_times.hpp"
+#include "host/study/paper.hpp"
+#include "host/study/spa_times.hpp"
+#include "tests/ring/small_mapping.hpp"
 
 namespace raya {
 namespace {

@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "error.hpp"
-#include "report/scratch_folder.hpp"
-#include "small_page.hpp"
-#include "study/page_writer.hpp"
+#include "host/error.hpp"
+#include "host/study/page_writer.hpp"
+#include "tests/report/scratch_folder.hpp"
+#include "tests/study/small_page.hpp"
 
 namespace raya {
 namespace {

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "report/scratch_folder.hpp"
-#include "report/whole_file.hpp"
-#include "small_page.hpp"
-#include "study/page_writer.hpp"
-#include "study/plotter.hpp"
+#include "host/report/whole_file.hpp"
+#include "host/study/page_writer.hpp"
+#include "host/study/plotter.hpp"
+#include "tests/report/scratch_folder.hpp"
+#include "tests/study/small_page.hpp"
 
 namespace raya {
 namespace {

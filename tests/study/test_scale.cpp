@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "study/laboratory.hpp"
-#include "study/page_writer.hpp"
-#include "study/scale.hpp"
-#include "study/studies.hpp"
-#include "study_cases.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/page_writer.hpp"
+#include "host/study/scale.hpp"
+#include "host/study/studies.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {

@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "ring/mapping.hpp"
-#include "ring/small_mapping.hpp"
-#include "study/page_shape.hpp"
-#include "study/static_vs_dynamic.hpp"
-#include "study/studies.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/study/static_vs_dynamic.hpp"
+#include "host/study/studies.hpp"
+#include "tests/ring/small_mapping.hpp"
+#include "tests/study/page_shape.hpp"
 
 namespace raya {
 namespace {

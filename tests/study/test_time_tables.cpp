@@ -1,14 +1,14 @@
 // The studies of Tables 2, 3 and 4, against the cost image and the machine's rates by hand.
 #include <catch2/catch.hpp>
 
-#include "machine/budget.hpp"
-#include "reference/reference.hpp"
-#include "ring/mapping.hpp"
-#include "ring/schedule.hpp"
-#include "study/laboratory.hpp"
-#include "study/page_shape.hpp"
-#include "study/spa_times.hpp"
-#include "study/studies.hpp"
+#include "host/machine/budget.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "host/study/laboratory.hpp"
+#include "host/study/spa_times.hpp"
+#include "host/study/studies.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/study/page_shape.hpp"
 
 namespace raya {
 namespace {

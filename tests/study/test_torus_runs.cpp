@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "cl/device.hpp"
-#include "scene/generate.hpp"
-#include "study/object_scenes.hpp"
-#include "study/torus_runs.hpp"
+#include "host/cl/device.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/object_scenes.hpp"
+#include "host/study/torus_runs.hpp"
 
 namespace raya {
 namespace {

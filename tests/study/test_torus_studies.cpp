@@ -3,15 +3,15 @@
 
 #include <chrono>
 
-#include "cl/device.hpp"
-#include "page_shape.hpp"
-#include "scene/generate.hpp"
-#include "study/hybrid.hpp"
-#include "study/inject.hpp"
-#include "study/nodes.hpp"
-#include "study/objects.hpp"
-#include "study/studies.hpp"
-#include "study/torus_runs.hpp"
+#include "host/cl/device.hpp"
+#include "host/scene/generate.hpp"
+#include "host/study/hybrid.hpp"
+#include "host/study/inject.hpp"
+#include "host/study/nodes.hpp"
+#include "host/study/objects.hpp"
+#include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
+#include "tests/study/page_shape.hpp"
 
 namespace raya {
 namespace {

@@ -1,7 +1,7 @@
 // Closest hits in one voxel of a torus node, and what lies there. A work-group is one work-item, which takes the next V
 // rays; `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
-#include "shading/shade.clh"
-#include "shared/node.h"
+#include "kernels/shading/shade.clh"
+#include "kernels/shared/node.h"
 
 static inline ray load_ray(__global const float* rays, uint first) {
     __global const float* from = rays + first * 7;

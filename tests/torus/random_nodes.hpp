@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
-#include "kernels/random_scene.hpp"
-#include "torus/node_memory.hpp"
-#include "torus/random_torus.hpp"
+#include "host/torus/node_memory.hpp"
+#include "tests/kernels/random_scene.hpp"
+#include "tests/torus/random_torus.hpp"
 
 namespace raya {
 

@@ -5,10 +5,10 @@
 #include <functional>
 #include <string>
 
-#include "error.hpp"
-#include "scene/random_below.hpp"
-#include "scene/split_mix.hpp"
-#include "torus/topology.hpp"
+#include "host/error.hpp"
+#include "host/scene/split_mix.hpp"
+#include "host/torus/topology.hpp"
+#include "tests/scene/random_below.hpp"
 
 namespace raya {
 

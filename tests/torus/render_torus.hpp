@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "kernels/random_scene.hpp"
-#include "ring/render_scene.hpp"
-#include "scene/random_below.hpp"
-#include "shared/traffic.h"
-#include "torus/topology.hpp"
-#include "torus/torus_renderer.hpp"
+#include "host/error.hpp"
+#include "host/torus/topology.hpp"
+#include "host/torus/torus_renderer.hpp"
+#include "kernels/shared/traffic.h"
+#include "tests/kernels/random_scene.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/scene/random_below.hpp"
 
 namespace raya {
 

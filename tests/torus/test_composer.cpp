@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernels/kernel_options.hpp"
-#include "scene/random_below.hpp"
-#include "torus/composer.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/torus/composer.hpp"
+#include "tests/scene/random_below.hpp"
 
 namespace raya {
 namespace {

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <tuple>
 
-#include "report/gunzip.hpp"
-#include "torus/packet_trace.hpp"
-#include "torus/render_torus.hpp"
+#include "host/torus/packet_trace.hpp"
+#include "tests/report/gunzip.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "report/scratch_folder.hpp"
-#include "torus/render_torus.hpp"
+#include "tests/report/scratch_folder.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {

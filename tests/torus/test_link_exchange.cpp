@@ -7,8 +7,8 @@
 #include <map>
 #include <vector>
 
-#include "torus/link_exchange.hpp"
-#include "torus/random_torus.hpp"
+#include "host/torus/link_exchange.hpp"
+#include "tests/torus/random_torus.hpp"
 
 namespace raya {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "torus/random_nodes.hpp"
+#include "tests/torus/random_nodes.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <vector>
 
-#include "kernels/kernel_runner.hpp"
-#include "kernels/probe.hpp"
-#include "torus/random_nodes.hpp"
+#include "tests/kernels/kernel_runner.hpp"
+#include "tests/kernels/probe.hpp"
+#include "tests/torus/random_nodes.hpp"
 
 using namespace raya;
 

@@ -4,7 +4,7 @@
 #include <regex>
 #include <string>
 
-#include "torus/random_nodes.hpp"
+#include "tests/torus/random_nodes.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <map>
 
-#include "torus/random_torus.hpp"
-#include "torus/render_torus.hpp"
+#include "tests/torus/random_torus.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {

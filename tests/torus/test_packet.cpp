@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/split_mix.hpp"
-#include "shared/packet.h"
-#include "torus/random_torus.hpp"
+#include "host/scene/split_mix.hpp"
+#include "kernels/shared/packet.h"
+#include "tests/torus/random_torus.hpp"
 
 using namespace raya;
 

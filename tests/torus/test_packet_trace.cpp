@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "report/gunzip.hpp"
-#include "scene/split_mix.hpp"
-#include "torus/packet_trace.hpp"
+#include "host/scene/split_mix.hpp"
+#include "host/torus/packet_trace.hpp"
+#include "tests/report/gunzip.hpp"
 
 namespace raya {
 namespace {

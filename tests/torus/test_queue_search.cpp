@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "error.hpp"
-#include "torus/queue_search.hpp"
+#include "host/error.hpp"
+#include "host/torus/queue_search.hpp"
 
 namespace raya {
 namespace {

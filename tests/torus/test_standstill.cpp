@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "torus/random_torus.hpp"
-#include "torus/render_torus.hpp"
+#include "tests/torus/random_torus.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "torus/random_torus.hpp"
+#include "tests/torus/random_torus.hpp"
 
 using namespace raya;
 using Catch::Contains;

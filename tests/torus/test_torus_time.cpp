@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "scene/split_mix.hpp"
-#include "torus/torus_time.hpp"
+#include "host/scene/split_mix.hpp"
+#include "host/torus/torus_time.hpp"
 
 namespace raya {
 namespace {

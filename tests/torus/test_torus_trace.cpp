@@ -2,12 +2,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "machine/budget.hpp"
-#include "report/trace_schema.hpp"
-#include "torus/render_torus.hpp"
-#include "torus/torus_time.hpp"
-#include "torus/torus_trace.hpp"
-#include "torus/torus_work.hpp"
+#include "host/machine/budget.hpp"
+#include "host/torus/torus_time.hpp"
+#include "host/torus/torus_trace.hpp"
+#include "host/torus/torus_work.hpp"
+#include "tests/report/trace_schema.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "torus/random_nodes.hpp"
-#include "torus/windows.hpp"
+#include "host/torus/windows.hpp"
+#include "tests/torus/random_nodes.hpp"
 
 namespace raya {
 namespace {

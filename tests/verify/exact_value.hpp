@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "machine/number_format.hpp"
-#include "number/mpfr_oracle.hpp"
+#include "host/machine/number_format.hpp"
+#include "tests/number/mpfr_oracle.hpp"
 
 namespace raya {
 

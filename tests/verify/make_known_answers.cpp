@@ -1,5 +1,5 @@
 // Prints the known answers of the number layer: build/tests/make_known_answers > host/verify/known_answers.csv
-#include "verify/make_known_answers.hpp"
+#include "tests/verify/make_known_answers.hpp"
 
 #include <cstdio>
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "number/random_operands.hpp"
-#include "verify/exact_value.hpp"
-#include "verify/known_answers.hpp"
+#include "host/verify/known_answers.hpp"
+#include "tests/number/random_operands.hpp"
+#include "tests/verify/exact_value.hpp"
 
 namespace raya {
 

@@ -1,5 +1,5 @@
 // Prints the known pictures: build/tests/make_pictures > host/verify/pictures.txt
-#include "verify/make_pictures.hpp"
+#include "tests/verify/make_pictures.hpp"
 
 #include <cstdio>
 

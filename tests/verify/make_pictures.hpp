@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "ring/ring_renderer.hpp"
-#include "verify/pictures.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/verify/pictures.hpp"
 
 namespace raya {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "report/scratch_folder.hpp"
-#include "verify/verify.hpp"
+#include "host/error.hpp"
+#include "host/verify/verify.hpp"
+#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 namespace {

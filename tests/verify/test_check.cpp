@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "error.hpp"
-#include "verify/verify.hpp"
+#include "host/error.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 namespace {

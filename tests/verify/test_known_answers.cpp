@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cli/run_program.hpp"
-#include "verify/make_known_answers.hpp"
+#include "tests/cli/run_program.hpp"
+#include "tests/verify/make_known_answers.hpp"
 
 namespace raya {
 namespace {

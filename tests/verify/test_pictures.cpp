@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "embedded.hpp"
-#include "reference/reference.hpp"
-#include "verify/make_pictures.hpp"
-#include "verify/verify.hpp"
+#include "host/embedded.hpp"
+#include "host/verify/verify.hpp"
+#include "tests/reference/reference.hpp"
+#include "tests/verify/make_pictures.hpp"
 
 namespace raya {
 
