@@ -3,7 +3,7 @@
 // Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that what is measured is how many the
 // device can do, not how long one takes. The results are stored so that no compiler leaves the work out.
 #include "number.clh"
-#include "chains.h"
+#include "kernels/shared/chains.h"
 
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: work-items in a work-group, 1..64
