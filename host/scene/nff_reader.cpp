@@ -96,8 +96,8 @@ class NffReader {
         const std::string_view keyword = tokens_.take_keyword();
         for (const Entity& entity : kEntities)
             if (entity.keyword == keyword) return (this->*entity.read)();
-        if (number) refuse(quoted(keyword) + " where an entity should start: has the one before too many numbers?");
-        refuse("unknown entity " + quoted(keyword) + "; NFF has v b l f s p pp c");
+        if (number) refuse(in_quotes(keyword) + " where an entity should start: has the one before too many numbers?");
+        refuse("unknown entity " + in_quotes(keyword) + "; NFF has v b l f s p pp c");
     }
 
     void read_view() {
@@ -132,7 +132,7 @@ class NffReader {
         for (std::size_t i = 0; i < N; ++i)
             if (!seen[i]) missing += fmt::format(" {}", parts[i]);
         const NffToken& token = tokens_.peek();
-        const std::string found = token.text.empty() ? "the file ends" : quoted(token.text) + " follows";
+        const std::string found = token.text.empty() ? "the file ends" : in_quotes(token.text) + " follows";
         tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}, but still missing:{}", found, missing));
     }
 
@@ -227,7 +227,7 @@ class NffReader {
         const std::string_view word = tokens_.take_word("the word");
         if (word == "plane") return read_plane();
         if (word == "checker") return read_checker();
-        refuse("unknown extension " + quoted(word) + "; raya knows '#raya plane' and '#raya checker'");
+        refuse("unknown extension " + in_quotes(word) + "; raya knows '#raya plane' and '#raya checker'");
     }
 
     void read_plane() {

@@ -36,7 +36,7 @@ ParsedNumber parsed_number(std::string_view text) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     constexpr std::size_t kShown = 24;
     std::string shown = "'";
     for (const char c : text.substr(0, kShown)) shown += c >= ' ' && c <= '~' ? c : '?';
@@ -97,7 +97,7 @@ std::string_view NffTokens::take_keyword() {
     const NffToken keyword = next_;
     if (!keyword.first_on_line)
         refuse(keyword.line, fmt::format("{} follows the end of {}; a new entity starts on a new line",
-                                         quoted(keyword.text), quoted(entity_)));
+                                         in_quotes(keyword.text), in_quotes(entity_)));
     entity_ = keyword.text;
     entity_line_ = keyword.line;
     one_line_ = keyword.text == kDirective;
@@ -107,9 +107,9 @@ std::string_view NffTokens::take_keyword() {
 
 NffToken NffTokens::take_part(std::string_view what) {
     const NffToken token = next_;
-    if (token.text.empty()) refuse(token.line, fmt::format("the file ends before {} of {}", what, quoted(entity_)));
+    if (token.text.empty()) refuse(token.line, fmt::format("the file ends before {} of {}", what, in_quotes(entity_)));
     if (one_line_ && token.line != entity_line_)
-        refuse(entity_line_, fmt::format("the line ends before {} of {}", what, quoted(entity_)));
+        refuse(entity_line_, fmt::format("the line ends before {} of {}", what, in_quotes(entity_)));
     advance();
     return token;
 }
@@ -126,11 +126,11 @@ double NffTokens::take_number(std::string_view what) {
     const bool cut_short = !number_follows() && next_.first_on_line && !one_line_;
     const NffToken token = take_part(what);
     const auto refused = [&](std::string_view reason) {
-        refuse(token.line, fmt::format("{} of {}: {} {}", what, quoted(entity_), quoted(token.text), reason));
+        refuse(token.line, fmt::format("{} of {}: {} {}", what, in_quotes(entity_), in_quotes(token.text), reason));
     };
     if (cut_short)
-        refuse(token.line, fmt::format("{} of line {} is cut short: {} stands where {} should be", quoted(entity_),
-                                       entity_line_, quoted(token.text), what));
+        refuse(token.line, fmt::format("{} of line {} is cut short: {} stands where {} should be", in_quotes(entity_),
+                                       entity_line_, in_quotes(token.text), what));
     const ParsedNumber number = parsed_number(token.text);
     if (number.error == std::errc::invalid_argument) refused("is not a number");
     if (number.error == std::errc::result_out_of_range) refused("is outside the range of double precision");
@@ -144,7 +144,7 @@ int NffTokens::take_integer(std::string_view what, int lowest, int highest) {
     const int line = next_.line;
     const double value = take_number(what);
     if (value != std::floor(value) || value < lowest || value > highest)
-        refuse(line, fmt::format("{} of {} is {}: must be a whole number from {} to {}", what, quoted(entity_), value,
+        refuse(line, fmt::format("{} of {} is {}: must be a whole number from {} to {}", what, in_quotes(entity_), value,
                                  lowest, highest));
     return static_cast<int>(value);
 }

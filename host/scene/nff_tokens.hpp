@@ -69,6 +69,6 @@ class NffTokens {
 };
 
 /// The text in quotes, shortened, with characters that cannot be shown as '?'.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace raya

@@ -11,6 +11,7 @@
 #include "host/cl/commands.hpp"
 #include "host/cl/kernel_source.hpp"
 #include "host/error.hpp"
+#include "tests/paths.h"
 #include "tests/report/scratch_folder.hpp"
 
 using namespace raya;

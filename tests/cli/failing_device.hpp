@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tests/cli/run_program.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 

@@ -23,6 +23,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/paths.h"
+
 namespace raya {
 
 struct Outcome {

@@ -3,6 +3,7 @@
 
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 namespace {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/cli/refusals.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 namespace {

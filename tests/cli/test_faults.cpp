@@ -9,6 +9,7 @@
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 namespace {

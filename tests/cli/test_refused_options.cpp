@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tests/cli/refusals.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 namespace {

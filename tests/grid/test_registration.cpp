@@ -8,6 +8,7 @@
 #include "host/grid/hit_regions.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "tests/grid/partition_lists.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 namespace {

@@ -14,6 +14,7 @@
 #include "host/cl/commands.hpp"
 #include "host/cl/kernel_source.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 

@@ -15,6 +15,7 @@
 #include "host/cl/commands.hpp"
 #include "host/cl/kernel_source.hpp"
 #include "host/machine/number_format.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 

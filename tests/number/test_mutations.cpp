@@ -10,6 +10,7 @@
 
 #include "tests/number/compare.hpp"
 #include "tests/number/random_operands.hpp"
+#include "tests/paths.h"
 #include "tests/report/scratch_folder.hpp"
 
 namespace raya {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "tests/paths.h"
 
 namespace {
 using namespace raya;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "host/scene/nff_reader.hpp"
+#include "tests/paths.h"
 #include "tests/reference/reference.hpp"
 
 namespace raya::reference {

@@ -8,6 +8,7 @@
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/nff_reader.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 

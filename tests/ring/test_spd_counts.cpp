@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "host/scene/generate.hpp"
+#include "tests/paths.h"
 #include "tests/ring/render_scene.hpp"
 
 namespace raya {

@@ -7,6 +7,7 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/study/scenes.hpp"
 #include "tests/cli/run_program.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 namespace {

@@ -14,6 +14,7 @@
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "host/scene/split_mix.hpp"
+#include "tests/paths.h"
 
 using namespace raya;
 

@@ -8,6 +8,7 @@
 
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/nff_writer.hpp"
+#include "tests/paths.h"
 
 using namespace raya;
 

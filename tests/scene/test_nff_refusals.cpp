@@ -6,6 +6,7 @@
 #include "host/error.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/nff_writer.hpp"
+#include "tests/paths.h"
 
 using namespace raya;
 

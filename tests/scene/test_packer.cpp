@@ -12,6 +12,7 @@
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/triangulate.hpp"
+#include "tests/paths.h"
 #include "tests/reference/reference.hpp"
 #include "tests/scene/fp32.hpp"
 #include "tests/scene/packed_scene.hpp"

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/paths.h"
 #include "tests/report/scratch_folder.hpp"
 #include "tests/torus/render_torus.hpp"
 

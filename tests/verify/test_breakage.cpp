@@ -9,6 +9,7 @@
 
 #include "host/error.hpp"
 #include "host/verify/verify.hpp"
+#include "tests/paths.h"
 #include "tests/report/scratch_folder.hpp"
 
 namespace raya {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "tests/cli/run_program.hpp"
+#include "tests/paths.h"
 #include "tests/verify/make_known_answers.hpp"
 
 namespace raya {

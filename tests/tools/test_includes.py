@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Holds every #include of the project to what CONTRIBUTING.md says ("The house"): a folder includes what its row names, and
+no other; headers do not go round in circles; what reports and models machines reaches no OpenCL.
+  test_includes.py [ROOT]"""
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__).resolve()
+root = root if root.is_dir() else root.parents[2]
+FOR_ALL = {"host/error.hpp", "host/embedded.hpp"}
+BARE = "kernels/number/"  # a folder that others copy: its files name each other without a path
+NO_OPENCL = ["host/files/", "host/image/", "host/machine/", "host/report/", "host/scene/"]
+faults = []
+
+
+def table_rows(text):
+    """(folders of the row, text of "may know") for each row of the table below "The house"."""
+    house = text.split("## The house", 1)[1].split("\n## ", 1)[0]
+    for line in house.splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        names = re.findall(r"`([a-z_/]+/)`", cells[0])
+        if len(cells) == 3 and names:
+            first = names[0].split("/")[0] + "/"
+            yield [name if name.startswith(first) else first + name for name in names], cells[2]
+
+
+def full_name(name, known):
+    """`cl/` in a row of the host's folders is host/cl/."""
+    return name if name in known else "host/" + name
+
+
+def may_know(rows):
+    """{folder: the folders that it may include}; a folder may always include itself."""
+    allowed, above = {}, []
+    known = {folder for folders, _ in rows for folder in folders}
+    for folders, text in rows:
+        all_above, _, but = text.partition("but ")
+        named = [full_name(name, known) for name in re.findall(r"`([a-z_/]+/)`", all_above)]
+        for name in named:
+            if name not in known and not name.startswith("tests/"):
+                faults.append(f"CONTRIBUTING.md: {folders[0]} may know {name}, which has no row")
+        may = set(named)
+        if "everything" in text:
+            may |= known | {"tests/reference/"}
+        if "all above" in text:
+            may |= set(above)
+        may -= {full_name(name, known) for name in re.findall(r"`([a-z_/]+/)`", but)}
+        for folder in folders:
+            allowed[folder] = may | set(folders)
+        above += folders
+    return allowed
+
+
+def includes():
+    """{file: the project's files that it includes}, for host/, kernels/ and tests/."""
+    found = {}
+    for path in sorted(p for top in ("host", "kernels", "tests") for p in (root / top).rglob("*")):
+        if path.suffix not in (".cpp", ".hpp", ".h", ".cl", ".clh"):
+            continue
+        name = path.relative_to(root).as_posix()
+        found[name] = set()
+        for line in path.read_text().splitlines():
+            match = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
+            if not match or match[1] == "tests/paths.h":  # the build makes that one
+                continue
+            bare = name.startswith(BARE) and "/" not in match[1]
+            target = f"{path.parent.relative_to(root).as_posix()}/{match[1]}" if bare else match[1]
+            if (root / target).is_file():
+                found[name].add(target)
+            elif not name.startswith(BARE + "example/"):
+                faults.append(f'{name}: #include "{match[1]}" is no path from the project\'s root')
+    return found
+
+
+def folder_of(name, folders):
+    """The longest folder with a row that `name` lies in."""
+    return max((folder for folder in folders if name.startswith(folder)), key=len, default=None)
+
+
+def reaches(graph, start):
+    seen, waiting = set(), [start]
+    while waiting:
+        for target in graph.get(waiting.pop(), ()):
+            if target not in seen:
+                seen.add(target)
+                waiting.append(target)
+    return seen
+
+
+def main():
+    rows = list(table_rows((root / "CONTRIBUTING.md").read_text()))
+    allowed, graph = may_know(rows), includes()
+    for name, targets in graph.items():
+        folder = folder_of(name, allowed)
+        if folder is None:
+            if name.startswith(("host/", "kernels/")) and name not in FOR_ALL | {"host/main.cpp"}:
+                faults.append(f"{name}: its folder has no row in CONTRIBUTING.md")
+            continue
+        for target in sorted(targets - FOR_ALL):
+            other = folder_of(target, allowed) or "/".join(target.split("/")[:2]) + "/"
+            if not name.startswith("tests/") and other not in allowed[folder]:
+                faults.append(f"{name} includes {target}: {folder} may not know {other}")
+    for name in graph:
+        reached = reaches(graph, name)
+        if name in reached:
+            faults.append(f"{name} includes itself on a way round")
+        if name.startswith(tuple(NO_OPENCL)) and "host/cl/opencl.hpp" in reached:
+            faults.append(f"{name} reaches OpenCL's headers")
+    print("\n".join(faults))
+    arrows = sum(len(targets) for targets in graph.values())
+    print(f"{len(graph)} files, {arrows} includes, {len(rows)} rows of folders: {len(faults)} faults")
+    return 1 if faults or len(graph) < 100 or len(rows) < 10 else 0
+
+
+sys.exit(main())
