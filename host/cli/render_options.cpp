@@ -172,7 +172,7 @@ KernelChoice kernel_choice(const RenderOptions& o) {
     KernelChoice choice;
     choice.lanes = o.lanes.value_or(0);
     choice.group_size = o.group.value_or(0);
-    choice.kernel_dir = o.kernel_dir;
+    choice.sources.folder = o.kernel_dir;
     return choice;
 }
 

@@ -123,7 +123,7 @@ void run_verify(const VerifyCommand& command) {
     if (!command.report.empty()) check_writable(command.report);
     const VerifySettings settings{.depth = command.full ? Depth::kFull : Depth::kQuick,
                                   .breakage = breakage_named(command.breakage),
-                                  .kernel_dir = command.kernel_dir,
+                                  .sources = {command.kernel_dir},
                                   .only = command.only,
                                   .lanes = command.lanes,
                                   .done = command.worker_done};

@@ -1,11 +1,11 @@
 // How the kernels are built for a device: the one place that makes their -D values.
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "host/cl/device.hpp"
+#include "host/kernels/kernel_source.hpp"
 #include "host/machine/number_format.hpp"
 
 namespace raya {
@@ -27,7 +27,7 @@ struct KernelChoice {
     std::uint32_t lanes = 0;                // V: 1, 4, 8 or 16
     std::uint32_t group_size = 0;           // L: 1..64 work-items
     bool filter = true;                     // the sphere filter, where it holds: the same hits, sooner
-    std::filesystem::path kernel_dir;       // kernels from disk in place of the program's own
+    KernelSources sources;                  // where they come from
     std::vector<std::string> more_options;  // appended to the build options
 };
 

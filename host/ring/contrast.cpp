@@ -1,15 +1,12 @@
 #include "host/ring/contrast.hpp"
 
-#include "host/cl/kernel_source.hpp"
-
 namespace raya {
 
 RingContrast::RingContrast(const ExchangeSetup& setup, float threshold)
     : setup_(setup),
       threshold_(threshold),
       mark_contrasts_(
-          setup.session
-              .build("ring/contrast.cl", kernel_source("ring/contrast.cl", setup.kernel_dir), setup.build_options)
+          setup.session.build("ring/contrast.cl", kernel_source("ring/contrast.cl", setup.sources), setup.build_options)
               .kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_float,
                       const Buffer<float>&, const Buffer<float>&, Buffer<std::uint8_t>&>("mark_contrasts")),
       marks_(setup.session.buffer<std::uint8_t>("marks", std::size_t{setup.pes} * setup.capacity)) {

@@ -1,11 +1,11 @@
 // What the kernels of the neighbour exchange are built and launched with.
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/kernels/kernel_source.hpp"
 
 namespace raya {
 
@@ -16,7 +16,7 @@ struct ExchangeSetup {
     std::uint32_t capacity = 0;  // pixels in the memory of each PE
     std::uint32_t group_size = 1;
     std::vector<std::string> build_options;  // with one lane
-    std::filesystem::path kernel_dir;
+    KernelSources sources;
 };
 
 }  // namespace raya

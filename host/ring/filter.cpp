@@ -2,14 +2,12 @@
 
 #include <utility>
 
-#include "host/cl/kernel_source.hpp"
-
 namespace raya {
 
 RingFilter::RingFilter(const ExchangeSetup& setup)
     : setup_(setup),
-      program_(setup.session.build("ring/filter.cl", kernel_source("ring/filter.cl", setup.kernel_dir),
-                                   setup.build_options)),
+      program_(
+          setup.session.build("ring/filter.cl", kernel_source("ring/filter.cl", setup.sources), setup.build_options)),
       add_neighbours_(program_.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
                                       const Buffer<float>&, Buffer<float>&>("add_neighbours")),
       take_means_(program_.kernel<const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("take_means")),

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "host/cl/kernel_source.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/kernels/kernel_source.hpp"
 #include "kernels/shared/chains.h"
 
 namespace raya {

@@ -90,7 +90,7 @@ void RingRenderer::build(const Scene& scene) {
     const KernelOptions options = kernel_options(settings_, job_, scene, session_.device());
     const KernelChoice& choice = settings_.kernels;
     tracer_ = std::make_unique<Tracer>(
-        session_, options, choice.more_options, choice.kernel_dir, settings_.mapping.pes, memory_.block_pixels,
+        session_, options, choice.more_options, choice.sources, settings_.mapping.pes, memory_.block_pixels,
         slice_pixels(settings_,
                      settings_.accel.grid ? std::min<std::size_t>(20, scene.object_count()) : scene.object_count(),
                      options.lanes * options.group_size, memory_.block_pixels));
@@ -113,7 +113,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
                               .capacity = memory_.block_pixels,
                               .group_size = options.group_size,
                               .build_options = all,
-                              .kernel_dir = settings_.kernels.kernel_dir};
+                              .sources = settings_.kernels.sources};
     exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
                                                     memory_.band_pixels);
     if (settings_.antialias.method == AntialiasMethod::kFilter) {

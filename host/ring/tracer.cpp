@@ -2,16 +2,14 @@
 
 #include <algorithm>
 
-#include "host/cl/kernel_source.hpp"
-
 namespace raya {
 
 Tracer::Tracer(Session& session, const KernelOptions& options, const std::vector<std::string>& more_options,
-               const std::filesystem::path& kernel_dir, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice)
+               const KernelSources& sources, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice)
     : session_(session), options_(options), pes_(pes), capacity_(capacity), slice_(slice) {
     std::vector<std::string> all = raya::build_options(options, session.device());
     all.insert(all.end(), more_options.begin(), more_options.end());
-    const Program program = session.build("ring/trace.cl", kernel_source("ring/trace.cl", kernel_dir), all);
+    const Program program = session.build("ring/trace.cl", kernel_source("ring/trace.cl", sources), all);
     kernel_ = std::make_unique<TraceKernel>(
         program.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
                        const Buffer<std::uint8_t>&, LocalMemory<std::uint32_t>, Buffer<float>&, Buffer<std::uint64_t>&,

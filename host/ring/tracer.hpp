@@ -1,7 +1,6 @@
 // The trace kernel: built for a job and a device, and launched in slices that each last about a second at most.
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -31,7 +30,7 @@ class Tracer {
     /// `capacity`: pixels in the memory of each PE. `slice`: pixels of each share that one launch traces.
     /// Checks the options as build_options does, builds the kernel with `more_options` appended.
     Tracer(Session& session, const KernelOptions& options, const std::vector<std::string>& more_options,
-           const std::filesystem::path& kernel_dir, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice);
+           const KernelSources& sources, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice);
 
     /// Counters of a pass, all 0.
     PassCounters make_counters(const std::string& pass) const;

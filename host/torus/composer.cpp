@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "host/cl/kernel_source.hpp"
 #include "host/error.hpp"
 
 namespace raya {
@@ -53,10 +52,9 @@ Contributions sort_contributions(const std::vector<ReturnPacket>& returns, std::
     return sorted;
 }
 
-Composer::Composer(Session& session, const std::vector<std::string>& build_options,
-                   const std::filesystem::path& kernel_dir)
+Composer::Composer(Session& session, const std::vector<std::string>& build_options, const KernelSources& sources)
     : session_(session),
-      compose_(session.build("torus/compose.cl", kernel_source("torus/compose.cl", kernel_dir), build_options)
+      compose_(session.build("torus/compose.cl", kernel_source("torus/compose.cl", sources), build_options)
                    .kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("compose")) {
     compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles at the first launch
 }

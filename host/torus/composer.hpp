@@ -2,11 +2,11 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/kernels/kernel_source.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
@@ -27,7 +27,7 @@ Contributions sort_contributions(const std::vector<ReturnPacket>& returns, std::
 
 class Composer {
   public:
-    Composer(Session& session, const std::vector<std::string>& build_options, const std::filesystem::path& kernel_dir);
+    Composer(Session& session, const std::vector<std::string>& build_options, const KernelSources& sources);
 
     /// [pixels][3]: linear red, green, blue, in the format of the build.
     std::vector<float> compose(const Contributions& contributions);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "host/cl/kernel_source.hpp"
 #include "kernels/shared/node_counts.h"
 
 namespace raya {
@@ -69,7 +68,7 @@ NodeArray::NodeArray(Session& session, const TorusSettings& settings, const Node
 template <class K>
 std::unique_ptr<K> NodeArray::build(const std::string& name, const std::vector<std::string>& all) {
     const std::string file = "torus/" + name + ".cl";
-    const Program program = session_.build(file, kernel_source(file, settings_.kernels.kernel_dir), all);
+    const Program program = session_.build(file, kernel_source(file, settings_.kernels.sources), all);
     build_options_ = program.options();
     return [&]<class... Args>(std::type_identity<Kernel<Args...>>) {
         return std::make_unique<K>(program.kernel<Args...>(name));

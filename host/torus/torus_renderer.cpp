@@ -102,7 +102,7 @@ void TorusRenderer::Parts::build() {
     one_lane.lanes = one_lane.group_size = 1;
     std::vector<std::string> all = build_options(one_lane, session.device());
     all.insert(all.end(), settings.kernels.more_options.begin(), settings.kernels.more_options.end());
-    composer = std::make_unique<Composer>(session, all, settings.kernels.kernel_dir);
+    composer = std::make_unique<Composer>(session, all, settings.kernels.sources);
     nodes->clear();
     nodes->trace_voxel(false);  // of empty queues: PoCL compiles a kernel's body at its first launch
     nodes->route();

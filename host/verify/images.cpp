@@ -100,7 +100,7 @@ std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
 std::optional<Image> plain_image(const Verification& v, Session& session, const Picture& picture) {
     RingSettings settings = plain_settings(picture);
     const KernelChoice broken = v.kernels(1, 1);
-    settings.kernels.kernel_dir = broken.kernel_dir;
+    settings.kernels.sources = broken.sources;
     settings.kernels.more_options = broken.more_options;
     settings.kernels.more_options.emplace_back("-cl-opt-disable");
     try {

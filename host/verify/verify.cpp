@@ -1,7 +1,5 @@
 #include "host/verify/verify.hpp"
 
-#include "host/cl/kernel_source.hpp"
-
 namespace raya {
 
 namespace {
@@ -36,13 +34,13 @@ void Verification::check(const std::string& layer, const std::string& name,
 
 Program Verification::build(Session& session, const std::string& file, std::vector<std::string> options) const {
     options.insert(options.end(), settings_.breakage.options.begin(), settings_.breakage.options.end());
-    return session.build(file, kernel_source(file, settings_.kernel_dir), options);
+    return session.build(file, kernel_source(file, settings_.sources), options);
 }
 
 KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size) const {
     return {.lanes = lanes ? lanes : settings_.lanes,
             .group_size = group_size,
-            .kernel_dir = settings_.kernel_dir,
+            .sources = settings_.sources,
             .more_options = settings_.breakage.options};
 }
 

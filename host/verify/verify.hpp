@@ -1,6 +1,5 @@
 // Is this device, with its driver and its compiler, right? Known answers from the number layer up to whole images.
 #pragma once
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,10 +20,10 @@ enum class Depth {
 struct VerifySettings {
     Depth depth = Depth::kQuick;
     Breakage breakage{};
-    std::filesystem::path kernel_dir{};  // kernels from disk in place of the program's own
-    std::string only{};                  // checks with this in "LAYER NAME" alone; empty: all
-    std::uint32_t lanes = 0;             // this width alone, 1, 4, 8 or 16; 0: the device's own, with kFull all
-    std::size_t done = 0;                // so many checks, the first ones, are left out
+    KernelSources sources{};  // of the kernels
+    std::string only{};       // checks with this in "LAYER NAME" alone; empty: all
+    std::uint32_t lanes = 0;  // this width alone, 1, 4, 8 or 16; 0: the device's own, with kFull all
+    std::size_t done = 0;     // so many checks, the first ones, are left out
 };
 
 /// Is told of every check as it begins, by layer and name, and as it ends.

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/kernel_source.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/kernels/kernel_source.hpp"
 #include "tests/paths.h"
 
 namespace raya {

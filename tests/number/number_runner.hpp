@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/kernel_source.hpp"
+#include "host/kernels/kernel_source.hpp"
 #include "host/machine/number_format.hpp"
 #include "tests/paths.h"
 
@@ -103,7 +103,7 @@ class NumberRunner {
         if (!in) throw std::runtime_error("no operations.cl");
         std::ostringstream text;
         text << in.rdbuf();
-        return expand_kernel_source(text.str(), "tests/number/operations.cl", folder);
+        return expand_kernel_source(text.str(), "tests/number/operations.cl", {folder});
     }
 
     Program built(const NumberBuild& build) const {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/kernel_source.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/kernels/kernel_source.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/route.hpp"
 #include "kernels/shared/job.h"

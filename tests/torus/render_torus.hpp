@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,7 +28,7 @@ struct TorusCase {
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};
-    std::filesystem::path kernel_dir{};
+    KernelSources sources{};
 };
 
 inline TorusSettings settings_of(const TorusCase& c) {
@@ -46,7 +45,7 @@ inline TorusSettings settings_of(const TorusCase& c) {
     s.format = parse_format(c.format);
     s.kernels.lanes = c.lanes;
     s.kernels.group_size = c.group;
-    s.kernels.kernel_dir = c.kernel_dir;
+    s.kernels.sources = c.sources;
     return s;
 }
 

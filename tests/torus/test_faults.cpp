@@ -101,7 +101,7 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
 // How a fault shows itself; empty where it does not.
 std::string noticed(Session& session, const Scene& scene, TorusCase c, const Traffic& right,
                     const std::filesystem::path& kernels) {
-    c.kernel_dir = kernels;
+    c.sources.folder = kernels;
     try {
         const Traffic t = traffic_of(session, scene, c);
         if (t.image != right.image) return "image: " + t.image;

@@ -128,7 +128,7 @@ TEST_CASE("a kernel that does nothing finds no right answers", "[verify][breakag
         const std::size_t body = text.find("\n{", text.find(std::string("void ") + row.kernel + "("));
         REQUIRE(body != std::string::npos);
         std::ofstream(file) << text.insert(body + 2, " return;");
-        const auto checks = verify(choose_device(""), {.kernel_dir = kernels, .only = row.only});
+        const auto checks = verify(choose_device(""), {.sources = {kernels}, .only = row.only});
         CHECK(failures(checks).size() == row.wrong);
         CHECK(checks.size() == row.wrong);
     }
@@ -156,7 +156,7 @@ TEST_CASE("a wrong border of the filter is seen in its images alone, with the pi
 }
 
 TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify][breakage]") {
-    const VerifySettings settings{.kernel_dir = "/no/such/folder", .only = "machine"};
+    const VerifySettings settings{.sources = {"/no/such/folder"}, .only = "machine"};
     const auto checks = verify(choose_device(""), settings);
     CHECK(count_of(checks, Outcome::kFail) > 5);
     CHECK(count_of(checks, Outcome::kPass) > 5);  // transfers need no kernel

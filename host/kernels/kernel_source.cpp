@@ -1,4 +1,4 @@
-#include "host/cl/kernel_source.hpp"
+#include "host/kernels/kernel_source.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ std::string included_file(const std::string& line, const std::string& file) {
     return name.find('/') == std::string::npos ? (std::filesystem::path(file).parent_path() / name).string() : name;
 }
 
-void append(std::string& source, const std::string& text, const std::string& name, const std::filesystem::path& folder,
+void append(std::string& source, const std::string& text, const std::string& name, const KernelSources& sources,
             std::set<std::string>& seen) {
     source += fmt::format("#line 1 \"{}\"\n", name);
     std::istringstream lines(text);
@@ -51,8 +51,7 @@ void append(std::string& source, const std::string& text, const std::string& nam
         if (included.empty()) {
             source += line + '\n';
         } else {
-            if (seen.insert(included).second)
-                append(source, read_kernel_file(included, folder), included, folder, seen);
+            if (seen.insert(included).second) append(source, kernel_file(included, sources), included, sources, seen);
             source += fmt::format("#line {} \"{}\"\n", number + 1, name);
         }
     }
@@ -60,16 +59,23 @@ void append(std::string& source, const std::string& text, const std::string& nam
 
 }  // namespace
 
-std::string expand_kernel_source(const std::string& text, const std::string& name,
-                                 const std::filesystem::path& folder) {
+std::string kernel_file(const std::string& file, const KernelSources& sources) {
+    return patched_text(read_kernel_file(file, sources.folder), file, sources.patches);
+}
+
+std::string kernel_source(const std::string& file, const KernelSources& sources) {
+    return expand_kernel_source(kernel_file(file, sources), file, sources);
+}
+
+std::string expand_kernel_source(const std::string& text, const std::string& name, const KernelSources& sources) {
     std::string source;
     std::set<std::string> seen = {name};
-    append(source, text, name, folder, seen);
+    append(source, text, name, sources, seen);
     return source;
 }
 
-std::string kernel_source(const std::string& file, const std::filesystem::path& folder) {
-    return expand_kernel_source(read_kernel_file(file, folder), file, folder);
+void check_patches(const KernelSources& sources) {
+    for (const SourcePatch& patch : sources.patches) kernel_file(patch.file, sources);
 }
 
 }  // namespace raya

@@ -5,12 +5,13 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/kernel_source.hpp"
 #include "host/error.hpp"
+#include "host/kernels/kernel_source.hpp"
 #include "tests/paths.h"
 #include "tests/report/scratch_folder.hpp"
 
@@ -39,29 +40,29 @@ bool is_include(const std::string& line) { return line.starts_with("#include \""
 
 }  // namespace
 
-TEST_CASE("includes are put in where they stand, each once, and the line numbers are kept", "[cl]") {
+TEST_CASE("includes are put in where they stand, each once, and the line numbers are kept", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "inner.clh", "inner 1\ninner 2\n");
     write(folder / "outer.clh", "#include \"inner.clh\"\nouter 2\n");
     const std::string text = "one\n#include \"outer.clh\"\nthree\n#include \"inner.clh\"\n#include <system.h>\n";
-    CHECK(expand_kernel_source(text, "some.cl", folder.path()) ==
+    CHECK(expand_kernel_source(text, "some.cl", {folder.path()}) ==
           "#line 1 \"some.cl\"\none\n"
           "#line 1 \"outer.clh\"\n#line 1 \"inner.clh\"\ninner 1\ninner 2\n#line 2 \"outer.clh\"\nouter 2\n"
           "#line 3 \"some.cl\"\nthree\n#line 5 \"some.cl\"\n#include <system.h>\n");
     write(folder / "some.cl", text);
-    CHECK(kernel_source("some.cl", folder.path()) == expand_kernel_source(text, "some.cl", folder.path()));
+    CHECK(kernel_source("some.cl", {folder.path()}) == expand_kernel_source(text, "some.cl", {folder.path()}));
 }
 
-TEST_CASE("files that include each other end", "[cl]") {
+TEST_CASE("files that include each other end", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "a.clh", "#include \"b.clh\"\na 2\n");
     write(folder / "b.clh", "#include \"a.clh\"\nb 2\n");
-    const std::string source = kernel_source("a.clh", folder.path());
+    const std::string source = kernel_source("a.clh", {folder.path()});
     CHECK(count(source, "a 2\n") == 1);
     CHECK(count(source, "b 2\n") == 1);
 }
 
-TEST_CASE("every line of the trace kernel stands in its file at its number, and none is lost", "[cl]") {
+TEST_CASE("every line of the trace kernel stands in its file at its number, and none is lost", "[kernels]") {
     std::istringstream source(kernel_source("ring/trace.cl"));
     std::map<std::string, std::vector<std::string>> files;
     std::map<std::string, std::size_t> taken;
@@ -90,35 +91,67 @@ TEST_CASE("every line of the trace kernel stands in its file at its number, and 
     }
 }
 
-TEST_CASE("the program carries the kernels of the project's folder", "[cl]") {
+TEST_CASE("the program carries the kernels of the project's folder", "[kernels]") {
     int kernels = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(kKernels)) {
         if (entry.path().extension() != ".cl") continue;
         ++kernels;
         const std::string file = std::filesystem::relative(entry.path(), kKernels).string();
         CAPTURE(file);
-        CHECK(kernel_source(file) == kernel_source(file, kKernels));
+        CHECK(kernel_source(file) == kernel_source(file, {kKernels}));
     }
     CHECK(kernels > 0);
 }
 
-TEST_CASE("a file or an include that does not exist is refused by name", "[cl]") {
+TEST_CASE("a file or an include that does not exist is refused by name", "[kernels]") {
     CHECK_THROWS_AS(kernel_source("ring/tarce.cl"), UserError);
     CHECK_THROWS_WITH(kernel_source("ring/tarce.cl"), Contains("'ring/tarce.cl'"));
     CHECK_THROWS_AS(expand_kernel_source("#include \"none.clh\"\n", "t.cl"), UserError);
     CHECK_THROWS_WITH(expand_kernel_source("#include \"none.clh\"\n", "t.cl"), Contains("'none.clh'"));
     const ScratchFolder folder;
-    CHECK_THROWS_AS(kernel_source("ring/trace.cl", folder.path()), UserError);
-    CHECK_THROWS_WITH(kernel_source("ring/trace.cl", folder.path()),
+    CHECK_THROWS_AS(kernel_source("ring/trace.cl", {folder.path()}), UserError);
+    CHECK_THROWS_WITH(kernel_source("ring/trace.cl", {folder.path()}),
                       Contains((folder / "ring/trace.cl").string()) && Contains("--kernel-dir"));
 }
 
-TEST_CASE("a build log names the file and line of the mistake", "[cl]") {
+TEST_CASE("a patch changes its file wherever it is put in, and no other text", "[kernels]") {
+    const ScratchFolder folder;
+    write(folder / "inner.clh", "inner 1\ninner 2\n");
+    write(folder / "outer.cl", "#include \"inner.clh\"\nouter 2\n");
+    const SourcePatch two_lines{"inner.clh", "1\ninner 2", "one\ninner"};
+    const KernelSources sources{folder.path(), {two_lines, {"inner.clh", "inner\n", "two\n"}}};
+    CHECK(kernel_file("inner.clh", sources) == "inner one\ntwo\n");
+    CHECK(kernel_file("outer.cl", sources) == kernel_file("outer.cl", {folder.path()}));
+    CHECK(kernel_source("outer.cl", sources) ==
+          "#line 1 \"outer.cl\"\n#line 1 \"inner.clh\"\ninner one\ntwo\n#line 2 \"outer.cl\"\nouter 2\n");
+    // Includes are put in afterwards: a patch may bring one.
+    const SourcePatch include{"outer.cl", "outer 2", "#include \"more.clh\""};
+    write(folder / "more.clh", "more 1\n");
+    CHECK_THAT(kernel_source("outer.cl", {folder.path(), {include}}), Contains("\"more.clh\"\nmore 1\n"));
+    // Of the program's own kernels as well.
+    const SourcePatch own{"ring/trace.cl", "void trace(", "void retrace("};
+    CHECK_THAT(kernel_source("ring/trace.cl", {.patches = {own}}), Contains("void retrace("));
+}
+
+TEST_CASE("a patch that does not find its text exactly once is refused", "[kernels]") {
+    const auto refused = [](const SourcePatch& patch, const std::string& why) {
+        const KernelSources sources{.patches = {patch}};
+        CHECK_THROWS_AS(kernel_file(patch.file, sources), std::logic_error);
+        CHECK_THROWS_WITH(check_patches(sources), why);
+    };
+    refused({"ring/trace.cl", "no such text", ""}, "patch of ring/trace.cl: no text 'no such text'");
+    refused({"ring/trace.cl", "", "more"}, "patch of ring/trace.cl: no text ''");
+    refused({"ring/trace.cl", "uint", "int"}, "patch of ring/trace.cl: more than one text 'uint'");
+    CHECK_THROWS_AS(check_patches({.patches = {{"ring/tarce.cl", "uint", "int"}}}), UserError);
+    CHECK_NOTHROW(check_patches({.patches = {{"ring/trace.cl", "void trace(", "void retrace("}}}));
+}
+
+TEST_CASE("a build log names the file and line of the mistake", "[kernels]") {
     const ScratchFolder folder;
     write(folder / "broken.clh", "// a comment\nint two(void) { return first_mistake; }\n");
     const std::string text = "#include \"broken.clh\"\n\nkernel void f(global int* a) { a[0] = second_mistake; }\n";
     const Session session(choose_device(""));
-    const std::string source = expand_kernel_source(text, "mine.cl", folder.path());
+    const std::string source = expand_kernel_source(text, "mine.cl", {folder.path()});
     CHECK_THROWS_AS(session.build("mine.cl", source, {}), DeviceError);
     CHECK_THROWS_WITH(session.build("mine.cl", source, {}), Contains("broken.clh:2") && Contains("first_mistake") &&
                                                                 Contains("mine.cl:3") && Contains("second_mistake"));
