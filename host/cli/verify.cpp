@@ -20,7 +20,7 @@ namespace raya {
 namespace {
 
 struct VerifyCommand {
-    std::string device, report, kernel_dir, only, breakage;
+    std::string device, report, kernel_dir, only;
     std::uint32_t lanes = 0;
     bool quick = false, full = false;
     int lines = -1;  // a pipe, in the process that runs the checks (verify/worker.hpp)
@@ -35,7 +35,6 @@ struct VerifyCommand {
         add("--device", device);
         add("--kernel-dir", kernel_dir);
         add("--only", only);
-        add("--break", breakage);
         if (lanes) add("--lanes", std::to_string(lanes));
         return all;
     }
@@ -122,7 +121,6 @@ void run_verify(const VerifyCommand& command) {
     if (command.quick && command.full) throw UserError("--quick and --full: leave one of them out");
     if (!command.report.empty()) check_writable(command.report);
     const VerifySettings settings{.depth = command.full ? Depth::kFull : Depth::kQuick,
-                                  .breakage = breakage_named(command.breakage),
                                   .sources = {command.kernel_dir},
                                   .only = command.only,
                                   .lanes = command.lanes,
@@ -169,9 +167,7 @@ void add_verify_command(CLI::App& program) {
         ->add_option("--only", options->only,
                      "Only checks with this text in \"LAYER NAME\", as printed: number, \"image glass\", spa22, ...")
         ->type_name("TEXT");
-    // For the tests: makes checks fail on purpose, see verify/breakage.hpp. No group: not in the help.
-    command->add_option("--break", options->breakage)->group("");
-    // For the process that runs the checks, likewise.
+    // For the process that runs the checks. No group: not in the help.
     command->add_option("--lines", options->lines)->group("");
     command->add_option("--worker-device", options->worker_device)->group("");
     command->add_option("--worker-done", options->worker_done)->group("");

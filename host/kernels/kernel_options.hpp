@@ -24,11 +24,11 @@ struct KernelOptions {
 
 /// How the kernels are built for a device. 0: chosen from the device.
 struct KernelChoice {
-    std::uint32_t lanes = 0;                // V: 1, 4, 8 or 16
-    std::uint32_t group_size = 0;           // L: 1..64 work-items
-    bool filter = true;                     // the sphere filter, where it holds: the same hits, sooner
-    KernelSources sources;                  // where they come from
-    std::vector<std::string> more_options;  // appended to the build options
+    std::uint32_t lanes = 0;                  // V: 1, 4, 8 or 16
+    std::uint32_t group_size = 0;             // L: 1..64 work-items
+    bool filter = true;                       // the sphere filter, where it holds: the same hits, sooner
+    KernelSources sources{};                  // where they come from
+    std::vector<std::string> more_options{};  // appended to the build options
 };
 
 /// V: as wide as the device's float vectors on a CPU, 1 elsewhere.

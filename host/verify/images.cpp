@@ -99,10 +99,8 @@ std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
 // The picture made plainly on the same device, without the compiler's optimiser; nothing where that is refused.
 std::optional<Image> plain_image(const Verification& v, Session& session, const Picture& picture) {
     RingSettings settings = plain_settings(picture);
-    const KernelChoice broken = v.kernels(1, 1);
-    settings.kernels.sources = broken.sources;
-    settings.kernels.more_options = broken.more_options;
-    settings.kernels.more_options.emplace_back("-cl-opt-disable");
+    settings.kernels.sources = v.kernels(1, 1).sources;
+    settings.kernels.more_options = {"-cl-opt-disable"};
     try {
         return RingRenderer(session, scene_of(picture), settings).render().image;
     } catch (const std::exception&) {

@@ -97,7 +97,7 @@ RingSettings plain_settings(const Picture& picture) {
     settings.sampling = picture.sampling;
     settings.antialias.method = picture.antialias;
     settings.antialias.points = picture.points;
-    settings.kernels = {.lanes = 1, .group_size = 1, .filter = false, .sources = {}, .more_options = {}};
+    settings.kernels = {.lanes = 1, .group_size = 1, .filter = false};
     return settings;
 }
 

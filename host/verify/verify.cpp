@@ -14,7 +14,9 @@ void visit_layers(Verification& verification) {
 }  // namespace
 
 Verification::Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs)
-    : device_(device), info_(device_info(device)), settings_(settings), sink_(sink), runs_(runs) {}
+    : device_(device), info_(device_info(device)), settings_(settings), sink_(sink), runs_(runs) {
+    check_patches(settings.sources);  // else one that does not fit would look like a fault seen
+}
 
 void Verification::check(const std::string& layer, const std::string& name,
                          const std::function<Verdict(Session&)>& body) {
@@ -32,16 +34,12 @@ void Verification::check(const std::string& layer, const std::string& name,
     if (sink_.finished) sink_.finished(checks_.back());
 }
 
-Program Verification::build(Session& session, const std::string& file, std::vector<std::string> options) const {
-    options.insert(options.end(), settings_.breakage.options.begin(), settings_.breakage.options.end());
+Program Verification::build(Session& session, const std::string& file, const std::vector<std::string>& options) const {
     return session.build(file, kernel_source(file, settings_.sources), options);
 }
 
 KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size) const {
-    return {.lanes = lanes ? lanes : settings_.lanes,
-            .group_size = group_size,
-            .sources = settings_.sources,
-            .more_options = settings_.breakage.options};
+    return {.lanes = lanes ? lanes : settings_.lanes, .group_size = group_size, .sources = settings_.sources};
 }
 
 std::vector<std::uint32_t> Verification::lanes() const {

@@ -7,7 +7,6 @@
 #include "host/cl/commands.hpp"
 #include "host/cl/device.hpp"
 #include "host/kernels/kernel_options.hpp"
-#include "host/verify/breakage.hpp"
 #include "host/verify/check.hpp"
 
 namespace raya {
@@ -19,7 +18,6 @@ enum class Depth {
 
 struct VerifySettings {
     Depth depth = Depth::kQuick;
-    Breakage breakage{};
     KernelSources sources{};  // of the kernels
     std::string only{};       // checks with this in "LAYER NAME" alone; empty: all
     std::uint32_t lanes = 0;  // this width alone, 1, 4, 8 or 16; 0: the device's own, with kFull all
@@ -33,7 +31,7 @@ struct CheckSink {
 };
 
 /// Checks `device` from the number layer to the images, layer by layer, so that the first failure is nearest to the
-/// fault. DeviceError if the device says nothing of itself.
+/// fault. DeviceError if the device says nothing of itself; std::logic_error for patches that do not fit.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
 
 /// "LAYER NAME" of every check that verify() would run, in their order.
@@ -51,8 +49,8 @@ class Verification {
     /// Runs one check in a session of its own: a failed command may leave a context of no use.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
-    /// A program of kernels/, built with the fault that is to be seen.
-    Program build(Session& session, const std::string& file, std::vector<std::string> options) const;
+    /// A program of kernels/.
+    Program build(Session& session, const std::string& file, const std::vector<std::string>& options) const;
     /// The same for a renderer's kernels.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 

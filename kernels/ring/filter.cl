@@ -49,11 +49,7 @@ void take_means(__global const uint* restrict broadcast,  // the job's words (ke
     const uint end = min(capacity, raya_share_size(share));
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
         const raya_pixel pixel = raya_pixel_of(m, share, k);
-#ifdef RAYA_BREAK_BORDER
-        const uint columns = 2 + raya_has_neighbour(m, pixel, RAYA_LEFT);
-#else
         const uint columns = 1 + raya_has_neighbour(m, pixel, RAYA_LEFT) + raya_has_neighbour(m, pixel, RAYA_RIGHT);
-#endif
         const uint rows = 1 + raya_has_neighbour(m, pixel, RAYA_ABOVE) + raya_has_neighbour(m, pixel, RAYA_BELOW);
         const real pixels = num_from_index(rows * columns);
         for (uint i = 3 * k; i < 3 * k + 3; ++i) mine[i] = num_div(mine[i], pixels);

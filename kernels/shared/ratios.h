@@ -10,9 +10,6 @@ RAYA_SHARED_FUNCTION raya_u32 raya_ceil_ratio(raya_u32 a, raya_u32 b, raya_u32 c
 
 // floor(a b / c)
 RAYA_SHARED_FUNCTION raya_u32 raya_floor_ratio(raya_u32 a, raya_u32 b, raya_u32 c) {
-#ifdef RAYA_BREAK_MAPPING
-    return a * b / c;
-#endif
     return (raya_u32)((raya_u64)a * b / c);
 }
 

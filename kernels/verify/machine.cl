@@ -69,9 +69,7 @@ void turn_round(__global const uint* restrict from,  // [group][words]
         __local const uint* source = own + i % 2 * words;
         __local uint* target = own + (i + 1) % 2 * words;
         for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) target[w] = source[words - 1 - w] + 1;
-#ifndef RAYA_BREAK_BARRIER
         barrier(CLK_LOCAL_MEM_FENCE);
-#endif
     }
     for (uint w = get_local_id(0); w < words; w += RAYA_GROUP) to[group * words + w] = own[times % 2 * words + w];
     for (uint n = atomic_inc(next); n < words; n = atomic_inc(next)) drawn[group * words + n] += 1;

@@ -1,28 +1,21 @@
 // Trouble with the device or its compiler: exit code 3, with all that is needed to mend it.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "tests/cli/refusals.hpp"
-#include "tests/paths.h"
+#include "tests/kernels/write_kernels.hpp"
 
 namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-/// Copies kernels/ and adds a line to one of its files. Returns the line's number.
-int copy_kernels(const fs::path& to, const std::string& file, const std::string& line) {
-    fs::copy(RAYA_SOURCE_DIR "/kernels", to, fs::copy_options::recursive);
-    const std::string text = file_contents(to / file);
-    std::ofstream(to / file, std::ios::app) << line << '\n';
-    return static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 1;
-}
-
 TEST_CASE("a kernel that does not compile ends with device, options and build log", "[cli]") {
     const ScratchFolder kernels, outputs;
-    const std::string broken = kernels / "kernels", planes = scene_file("planes");
-    const int line = copy_kernels(broken, "geometry/sphere.clh", "no_such_type broken;");
+    const SourcePatch mistake{"geometry/sphere.clh", "#include \"kernels/geometry/ray.clh\"", "no_such_type broken;"};
+    const std::string broken = write_kernels(kernels / "kernels", {mistake}), planes = scene_file("planes");
+    const std::string text = kernel_file(mistake.file);
+    const auto line = 1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(text.find(mistake.find)), '\n');
     check_refused(outputs, render_into(outputs, planes, {"--lanes", "4", "--kernel-dir", broken}), 3,
                   {"building program 'ring/trace.cl'", "CL_BUILD_PROGRAM_FAILURE", "remedy",
                    "device: ", "options: -cl-std=CL1.2 ", "build log:", "geometry/sphere.clh:" + std::to_string(line),
@@ -31,13 +24,9 @@ TEST_CASE("a kernel that does not compile ends with device, options and build lo
 
 TEST_CASE("a device that ends a loop early is found by its pixels, and nothing is written", "[cli]") {
     const ScratchFolder kernels, outputs;
-    const std::string broken = kernels / "kernels", planes = scene_file("planes");
-    copy_kernels(broken, "ring/trace.cl", "");
-    std::string text = file_contents(kernels / "kernels/ring/trace.cl");
-    const std::string end = "store.end = min(end, raya_share_size(store.share));";
-    REQUIRE(contains(text, end));
-    text.insert(text.find(end) + end.size(), " store.end -= pe == 3 && store.end > 0;");
-    std::ofstream(kernels / "kernels/ring/trace.cl") << text;
+    const SourcePatch early{"ring/trace.cl", "store.points = points;",
+                            "store.points = points; store.end -= pe == 3 && store.end > 0;"};
+    const std::string broken = write_kernels(kernels / "kernels", {early}), planes = scene_file("planes");
     for (const char* method : {"none", "supersample"}) {
         CAPTURE(method);
         check_refused(outputs,

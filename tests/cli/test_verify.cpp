@@ -4,6 +4,8 @@
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
+#include "tests/kernels/write_kernels.hpp"
+#include "tests/verify/faults.hpp"
 
 namespace raya {
 
@@ -17,8 +19,8 @@ TEST_CASE("verify prints a line for each check and closes with the counts", "[cl
 
 TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli][verify]") {
     const ScratchFolder scratch;
-    const std::string file = (scratch / "report.json").string();
-    const Outcome run = run_raya({"verify", "--only", "machine", "--break", "mapping", "--report", file});
+    const std::string file = scratch / "report.json", kernels = write_kernels(scratch / "kernels", {kMappingFault});
+    const Outcome run = run_raya({"verify", "--only", "machine", "--kernel-dir", kernels, "--report", file});
     INFO(run.told());
     CHECK(run.code == 4);
     CHECK_THAT(run.out, Catch::Contains("FAIL  machine   mapping: blocks") && Catch::Contains("expected") &&
@@ -77,11 +79,9 @@ TEST_CASE("verify with one width of lanes says so in its checks", "[cli][verify]
 
 TEST_CASE("verify refuses what makes no sense", "[cli][verify]") {
     CHECK(run_raya({"verify", "--quick", "--full"}).code == 2);
-    CHECK(run_raya({"verify", "--break", "everything"}).code == 2);
     CHECK(run_raya({"verify", "--report", "/no/such/folder/report.json"}).code == 2);
     CHECK(run_raya({"verify", "--lanes", "3"}).code == 2);
     CHECK(run_raya({"verify", "--device", "no such device"}).code == 3);
-    CHECK_FALSE(contains(run_raya({"verify", "--help"}).out, "--break"));
 }
 
 }  // namespace raya

@@ -7,7 +7,7 @@
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
-#include "tests/paths.h"
+#include "tests/kernels/write_kernels.hpp"
 
 namespace raya {
 namespace {
@@ -58,9 +58,8 @@ bool is_running_with(const std::string& argument) {
 TEST_CASE("Ctrl-C ends verify and the process of its checks at once", "[cli][verify]") {
     using namespace std::chrono;
     const ScratchFolder kernels, outputs;
-    fs::copy(RAYA_SOURCE_DIR "/kernels", kernels / "kernels", fs::copy_options::recursive);
-    const Words command = {
-        "verify", "--full", "--kernel-dir", kernels / "kernels", "--report", outputs / "report.json"};
+    const std::string copy = write_kernels(kernels / "kernels");
+    const Words command = {"verify", "--full", "--kernel-dir", copy, "--report", outputs / "report.json"};
     for (const auto& [signal, after_ms] : {std::pair(SIGINT, 0), std::pair(SIGINT, 1500), std::pair(SIGTERM, 1500)}) {
         CAPTURE(signal, after_ms);
         const Outcome run = run_raya(command, {.signal = signal, .signal_after_ms = after_ms});

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -56,8 +55,8 @@ inline std::uint32_t widest_lanes() {
 struct NumberBuild {
     NumberFormat format;
     std::uint32_t lanes = widest_lanes();
-    bool refines_division = false;      // RAYA_EXACT_DIVIDE=0, on a device whose division and root err
-    std::filesystem::path folder = {};  // of the kernels; empty: as embedded
+    bool refines_division = false;          // RAYA_EXACT_DIVIDE=0, on a device whose division and root err
+    std::vector<SourcePatch> patches = {};  // of the layer
 
     std::string name() const {
         return fmt::format("{}, {} lanes{}", format_name(format), lanes, refines_division ? ", refined" : "");
@@ -98,12 +97,12 @@ class NumberRunner {
     }
 
   private:
-    static std::string source(const std::filesystem::path& folder) {
+    static std::string source(const std::vector<SourcePatch>& patches) {
         std::ifstream in(RAYA_SOURCE_DIR "/tests/number/operations.cl", std::ios::binary);
         if (!in) throw std::runtime_error("no operations.cl");
         std::ostringstream text;
         text << in.rdbuf();
-        return expand_kernel_source(text.str(), "tests/number/operations.cl", {folder});
+        return expand_kernel_source(text.str(), "tests/number/operations.cl", {.patches = patches});
     }
 
     Program built(const NumberBuild& build) const {
@@ -117,7 +116,7 @@ class NumberRunner {
                                             fmt::format("-DRAYA_EXACT_FMA={:d}", session_.device().fused_multiply_add)};
         if (exact) options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
         if (build.refines_division) options.emplace_back("-DRAYA_TEST_DEVICE_ERROR");
-        return session_.build("operations.cl", source(build.folder), options);
+        return session_.build("operations.cl", source(build.patches), options);
     }
 
     std::uint32_t lanes_;

@@ -2,16 +2,10 @@
 // spoils.
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
 #include <vector>
 
 #include "tests/number/compare.hpp"
 #include "tests/number/random_operands.hpp"
-#include "tests/paths.h"
-#include "tests/report/scratch_folder.hpp"
 
 namespace raya {
 namespace {
@@ -21,9 +15,7 @@ constexpr std::size_t kRows = 20'000;
 
 struct Mutation {
     const char* what;
-    const char* file;  // below kernels/number/
-    const char* from;
-    const char* to;
+    SourcePatch patch;
     NumberFormat format;
     std::size_t operation;  // of operation_names(), the one that must go wrong
     bool refines = false;
@@ -32,38 +24,39 @@ struct Mutation {
 const std::vector<Mutation>& mutations() {
     const NumberFormat spa = {6, 15, false}, wide = {8, 21, false};
     static const std::vector<Mutation> all = {
-        {"residual of a sum dropped", "reduced.clh", "num_fit(z, sum_error(a, b, z))", "num_fit(z, num_all(0.0f))", spa,
+        {"residual of a sum dropped",
+         {"number/reduced.clh", "num_fit(z, sum_error(a, b, z))", "num_fit(z, num_all(0.0f))"},
+         spa,
          0},
-        {"ties to odd", "reduced.clh", "~(bits << (31 - RAYA_DROPPED))", "(bits << (31 - RAYA_DROPPED))", spa, 0},
-        {"no saturation", "reduced.clh", "min(as_lanes_uint(size), largest)", "as_lanes_uint(size)", spa, 2},
-        {"flushes the smallest binade", "reduced.clh", "((129 - (1 <<", "((130 - (1 <<", spa, 2},
-        {"keeps a binade too many", "reduced.clh", "((129 - (1 <<", "((128 - (1 <<", spa, 3},
-        {"multiply, then add", "reduced.clh", "const real z = fp32_fma(a, b, c);", "const real z = a * b + c;", spa, 5},
-        {"residual of c dropped", "reduced.clh", " + sum_error(c, -z, d)", "", spa, 5},
-        {"residual of a root dropped", "reduced.clh", "num_fit(z, fma(-z, z, x))", "num_fit(z, num_all(0.0f))", spa, 4},
-        {"a product too small forgotten", "scaled.clh", "choose(hint, sign * 0x1p-50f, scaled)", "scaled", wide, 5},
-        {"a product above the range not scaled", "scaled.clh", "fabs(a * b) > 0x1p120f", "fabs(a * b) > INFINITY", wide,
+        {"ties to odd",
+         {"number/reduced.clh", "~(bits << (31 - RAYA_DROPPED))", "(bits << (31 - RAYA_DROPPED))"},
+         spa,
+         0},
+        {"no saturation", {"number/reduced.clh", "min(as_lanes_uint(size), largest)", "as_lanes_uint(size)"}, spa, 2},
+        {"flushes the smallest binade", {"number/reduced.clh", "((129 - (1 <<", "((130 - (1 <<"}, spa, 2},
+        {"keeps a binade too many", {"number/reduced.clh", "((129 - (1 <<", "((128 - (1 <<"}, spa, 3},
+        {"multiply, then add",
+         {"number/reduced.clh", "const real z = fp32_fma(a, b, c);", "const real z = a * b + c;"},
+         spa,
          5},
-        {"small products not scaled", "scaled.clh", "fabs(a * b) < 0x1p-60f", "fabs(a * b) < 0.0f", wide, 2},
-        {"one step of refinement", "divide.clh", "i < 3", "i < 1", {8, 23, false}, 3, true},
-        {"two steps of refinement", "divide.clh", "i < 4", "i < 2", {8, 23, false}, 4, true},
+        {"residual of c dropped", {"number/reduced.clh", " + sum_error(c, -z, d)", ""}, spa, 5},
+        {"residual of a root dropped",
+         {"number/reduced.clh", "num_fit(z, fma(-z, z, x))", "num_fit(z, num_all(0.0f))"},
+         spa,
+         4},
+        {"a product too small forgotten",
+         {"number/scaled.clh", "choose(hint, sign * 0x1p-50f, scaled)", "scaled"},
+         wide,
+         5},
+        {"a product above the range not scaled",
+         {"number/scaled.clh", "fabs(a * b) > 0x1p120f", "fabs(a * b) > INFINITY"},
+         wide,
+         5},
+        {"small products not scaled", {"number/scaled.clh", "fabs(a * b) < 0x1p-60f", "fabs(a * b) < 0.0f"}, wide, 2},
+        {"one step of refinement", {"number/divide.clh", "i < 3", "i < 1"}, {8, 23, false}, 3, true},
+        {"two steps of refinement", {"number/divide.clh", "i < 4", "i < 2"}, {8, 23, false}, 4, true},
     };
     return all;
-}
-
-/// A copy of kernels/number/ with the mutation in it. Fails where the line to be changed is not there any more.
-void write_mutant(const Mutation& mutation, const std::filesystem::path& folder) {
-    std::filesystem::create_directories(folder);
-    std::filesystem::copy(RAYA_SOURCE_DIR "/kernels/number", folder / "number");
-    const auto file = folder / "number" / mutation.file;
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    std::string changed = text.str();
-    const std::size_t at = changed.find(mutation.from);
-    INFO(mutation.what << ": " << mutation.file << " has no '" << mutation.from << "' any more");
-    REQUIRE(at != std::string::npos);
-    changed.replace(at, std::string(mutation.from).size(), mutation.to);
-    std::ofstream(file) << changed;
 }
 
 // fp32 is no format of the oracle's: there the layer without the mutation is right, as test_fp32.cpp shows.
@@ -76,13 +69,10 @@ std::vector<std::uint32_t> right_results(const Mutation& mutation, const Operand
 }  // namespace
 
 TEST_CASE("faults put into the layer are seen", "[number][mutations]") {
-    const ScratchFolder scratch;
     for (const Mutation& mutation : mutations()) {
-        CAPTURE(mutation.what, mutation.file, kSeed);
-        const auto folder = scratch / mutation.what;
-        write_mutant(mutation, folder);
+        CAPTURE(mutation.what, mutation.patch.file, kSeed);
         const Operands operands = RandomOperands(mutation.format, kSeed).rows(kRows);
-        const NumberBuild build = {mutation.format, widest_lanes(), mutation.refines, folder};
+        const NumberBuild build = {mutation.format, widest_lanes(), mutation.refines, {mutation.patch}};
         const Results results = NumberRunner(build).run("operations", operands, 6);
         CHECK(differences(results[mutation.operation], right_results(mutation, operands)).count > 0);
     }

@@ -54,11 +54,12 @@ bool same_blocks(const Launch& l, const Memory& a, const Memory& b, std::size_t 
            same_bits(a.marks, b.marks, first * l.capacity, end * l.capacity);
 }
 
-/// The kernel of a step, from a source text that may hold a fault.
+/// The kernel of a step, which may hold a fault.
 class Runner {
   public:
-    Runner(Session& session, Step step, std::uint32_t group, const std::string& format, const std::string& source)
-        : session_(session), step_(step), group_(group), program_(build(format, source)) {}
+    Runner(Session& session, Step step, std::uint32_t group, const std::string& format,
+           const KernelSources& sources = {})
+        : session_(session), step_(step), group_(group), program_(build(format, sources)) {}
 
     /// The memory after the first `groups` PEs have run.
     Memory run(const Launch& l, const Memory& before, std::size_t groups) {
@@ -83,9 +84,10 @@ class Runner {
     using Words = const Buffer<std::uint32_t>&;
     using Floats = const Buffer<float>&;
 
-    Program build(const std::string& format, const std::string& source) const {
+    Program build(const std::string& format, const KernelSources& sources) const {
         const KernelOptions options = {.lanes = 1, .group_size = group_, .format = parse_format(format)};
-        return session_.build(step_file(step_), source, build_options(options, session_.device()));
+        const std::string file = step_file(step_);
+        return session_.build(file, kernel_source(file, sources), build_options(options, session_.device()));
     }
 
     template <class T>
@@ -196,38 +198,60 @@ Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
 struct Fault {
     const char* what;
     Step step;
-    const char *from, *to;
+    SourcePatch patch;
     bool reads, writes;  // which of the two findings must show it
 };
 
 const Fault kFaults[] = {
-    {"the block that arrived next door", Step::kAddNeighbours, "arrived + (size_t)pe * band",
-     "arrived + (size_t)((pe + 1) % m.pes) * band", true, false},
-    {"beyond the end of the band", Step::kAddNeighbours, " && n - a->begin < a->band", "", true, false},
-    {"beyond the end of the sender's share", Step::kAddNeighbours, "a.sender = raya_share_of(m, a.source)",
-     "a.sender = a.share", true, false},
-    {"the sums next door", Step::kAddNeighbours, "sums + (size_t)pe * capacity", "sums + (size_t)(pe + 1) * capacity",
-     false, true},
-    {"the sums next door", Step::kTakeMeans, "(size_t)pe * capacity", "(size_t)(pe + 1) * capacity", false, true},
-    {"the sums of the first PE", Step::kTakeMeans, "num_div(mine[i], pixels)", "num_div(sums[i], pixels)", true, false},
-    {"one pixel too many", Step::kTakeMeans, "min(capacity, raya_share_size(share))", "raya_share_size(share) + 1",
-     false, true},
-    {"the pixels next door", Step::kMarkContrasts, "pixels + (size_t)pe * capacity",
-     "pixels + (size_t)((pe + 1) % block.mapping.pes) * capacity", true, false},
-    {"the marks next door", Step::kMarkContrasts, "marks + (size_t)pe * capacity",
-     "marks + (size_t)(pe + 1) * capacity", false, true},
+    {"the block that arrived next door",
+     Step::kAddNeighbours,
+     {"ring/arrived.clh", "arrived + (size_t)pe * band", "arrived + (size_t)((pe + 1) % m.pes) * band"},
+     true,
+     false},
+    {"beyond the end of the band",
+     Step::kAddNeighbours,
+     {"ring/arrived.clh", " && n - a->begin < a->band", ""},
+     true,
+     false},
+    {"beyond the end of the sender's share",
+     Step::kAddNeighbours,
+     {"ring/arrived.clh", "a.sender = raya_share_of(m, a.source)", "a.sender = a.share"},
+     true,
+     false},
+    {"the sums next door",
+     Step::kAddNeighbours,
+     {"ring/filter.cl", "(size_t)pe * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)",
+      "(size_t)(pe + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)"},
+     false,
+     true},
+    {"the sums next door",
+     Step::kTakeMeans,
+     {"ring/filter.cl", "(size_t)pe * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)",
+      "(size_t)(pe + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)"},
+     false,
+     true},
+    {"the sums of the first PE",
+     Step::kTakeMeans,
+     {"ring/filter.cl", "num_div(mine[i], pixels)", "num_div(sums[i], pixels)"},
+     true,
+     false},
+    {"one pixel too many",
+     Step::kTakeMeans,
+     {"ring/filter.cl", "min(capacity, raya_share_size(share))", "raya_share_size(share) + 1"},
+     false,
+     true},
+    {"the pixels next door",
+     Step::kMarkContrasts,
+     {"ring/contrast.cl", "pixels + (size_t)pe * capacity",
+      "pixels + (size_t)((pe + 1) % block.mapping.pes) * capacity"},
+     true,
+     false},
+    {"the marks next door",
+     Step::kMarkContrasts,
+     {"ring/contrast.cl", "marks + (size_t)pe * capacity", "marks + (size_t)(pe + 1) * capacity"},
+     false,
+     true},
 };
-
-/// The kernel's text with the fault in it, wherever its line stands. Fails where the line is not there any more.
-std::string faulty_source(const Fault& fault) {
-    std::string text = kernel_source(step_file(fault.step));
-    INFO(fault.what << ": no '" << fault.from << "' any more");
-    REQUIRE(text.find(fault.from) != std::string::npos);
-    const std::string to = fault.to;
-    for (std::size_t at = 0; (at = text.find(fault.from, at)) != std::string::npos; at += to.size())
-        text.replace(at, std::strlen(fault.from), to);
-    return text;
-}
 
 }  // namespace
 
@@ -238,7 +262,7 @@ TEST_CASE("poison in other PEs' memory changes no PE's result, and none writes t
         for (const std::uint32_t group : {1u, 3u}) {
             const std::string format = group == 1 ? "fp32" : "e6m15";  // a build of a kernel takes most of the time
             CAPTURE(kSeed, step_name(step), group, format);
-            Runner runner(session, step, group, format, kernel_source(step_file(step)));
+            Runner runner(session, step, group, format);
             const Findings found = find_faults(runner, kSeed + group, 100);
             CHECK(found.poison_read == 0);
             CHECK(found.stray_writes == 0);
@@ -251,7 +275,7 @@ TEST_CASE("kernels that reach into another PE are found out", "[ring][exchange]"
     Session session(choose_device(""));
     for (const Fault& fault : kFaults) {
         CAPTURE(kSeed, fault.what, step_name(fault.step));
-        Runner runner(session, fault.step, 1, "fp32", faulty_source(fault));
+        Runner runner(session, fault.step, 1, "fp32", {.patches = {fault.patch}});
         const Findings found = find_faults(runner, kSeed, 40);
         if (fault.reads) CHECK(found.poison_read > 0);
         if (fault.writes) CHECK(found.stray_writes > 0);

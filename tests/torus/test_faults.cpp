@@ -1,76 +1,59 @@
 // Faults on purpose: kernels with one line changed, each of which the torus's own checks, its image or its traffic must
 // show. A ctest entry of its own: test_torus "[faults]".
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
-#include "tests/paths.h"
-#include "tests/report/scratch_folder.hpp"
 #include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {
 
 struct Fault {
-    const char *what, *file, *line, *instead;
+    const char* what;
+    SourcePatch patch;
 };
 
 const Fault kFaults[] = {
-    {"accept drops a packet", "torus/accept.cl",
-     "if (goal == RAYA_TAKEN) put_packet(packet, queue, used + taken + rank);",
-     "if (goal == RAYA_TAKEN) { if (packet.s0 == 7) packet.s1 = 0; put_packet(packet, queue, used + taken + rank); }"},
-    {"accept takes a packet twice", "torus/accept.cl", "*left += number_of(goals, RAYA_LEFT_THERE);",
-     "*left += number_of(goals, RAYA_LEFT_THERE); if (first == 0 && used > 3) *left = 1;"},
-    {"route sends the wrong way", "kernels/shared/torus.h", "return 2 * d + (up ? 0 : 1);",
-     "return 2 * d + (up ? 1 : 0);"},
-    {"of equal ways the one down", "kernels/shared/torus.h", "*up = higher <= side - higher;",
-     "*up = higher < side - higher;"},
-    {"the nearest hit of a wide ray is its last", "torus/outcome.clh", "!= RAYA_NO_VOXEL && !nearer) return;",
-     "!= RAYA_NO_VOXEL && !nearer && number > 100000) return;"},
-    {"a wide ray forgets its last voxel", "torus/outcome.clh", "if (next == p[",
-     "if (next_of_tour(n->grid, next) == p["},
-    {"a wide ray starts one voxel behind", "torus/node.clh", "const raya_place p = n->place;",
-     "raya_place p = n->place; p.at[0] = 0;"},
-    {"hits behind the way out count", "torus/outcome.clh", "(hits & (h.distance <= leaves))", "hits"},
-    {"hits never count before the last voxel", "torus/outcome.clh", "(hits & (h.distance <= leaves))",
-     "(hits & (h.distance <= leaves * 0.5f))"},
-    {"the walk is a voxel off", "grid/walk.clh", "const index k = at + choose_index(a->up, (index)(1), (index)(0));",
-     "const index k = at + choose_index(a->up, (index)(2), (index)(0));"},
-    {"a return is counted twice", "torus/route.cl", "used[RAYA_HOME] - status[home_status];", "used[RAYA_HOME];"},
-    {"a return is lost between boxes", "torus/accept.cl", "return moves;", "return moves - (moves > 1);"},
-    {"a shadow ray goes through what it hits", "torus/outcome.clh", "o.stopped = m & shadow & hits;",
-     "o.stopped = m & shadow & hits & (h.distance > 1.0f);"},
-    {"a pixel is made twice", "torus/inject.cl", "p.misses = root || !in_window;", "p.misses = 1;"},
-    {"windows are a row short", "torus/inject.cl", "p.row = root ? i : in_window ? header->window[0] + i",
-     "p.row = root ? i : in_window ? header->window[0] + i + 1"},
-    {"refraction takes the reflected path", "torus/shade_packets.clh", "transmit, f->path.all | turn);",
-     "transmit, f->path.all);"},
-    {"a light's number is one off", "torus/shade_packets.clh", "shadow.light = (index)(l + 1);",
-     "shadow.light = (index)(l);"},
-    {"no room is reserved", "torus/trace_voxel.cl", "if (*all + need > capacity) continue;",
-     "chosen.lane[lane] = RAYA_TRUE; continue;"},
+    {"accept drops a packet",
+     {"torus/accept.cl", "if (goal == RAYA_TAKEN) put_packet(packet, queue, used + taken + rank);",
+      "if (goal == RAYA_TAKEN) { if (packet.s0 == 7) packet.s1 = 0; put_packet(packet, queue, used + taken + rank); "
+      "}"}},
+    {"accept takes a packet twice",
+     {"torus/accept.cl", "*left += number_of(goals, RAYA_LEFT_THERE);",
+      "*left += number_of(goals, RAYA_LEFT_THERE); if (first == 0 && used > 3) *left = 1;"}},
+    {"route sends the wrong way",
+     {"shared/torus.h", "raya_next_link(raya_torus t, raya_u32 from, raya_u32 to)",
+      "raya_next_link(raya_torus t, raya_u32 to, raya_u32 from)"}},
+    {"of equal ways the one down",
+     {"shared/torus.h", "*up = higher <= side - higher;", "*up = higher < side - higher;"}},
+    {"the nearest hit of a wide ray is its last",
+     {"torus/outcome.clh", "!= RAYA_NO_VOXEL && !nearer) return;",
+      "!= RAYA_NO_VOXEL && !nearer && number > 100000) return;"}},
+    {"a wide ray forgets its last voxel",
+     {"torus/outcome.clh", "if (next == p[", "if (next_of_tour(n->grid, next) == p["}},
+    {"a wide ray starts one voxel behind",
+     {"torus/node.clh", "const raya_place p = n->place;", "raya_place p = n->place; p.at[0] = 0;"}},
+    {"hits behind the way out count", {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "hits"}},
+    {"hits never count before the last voxel",
+     {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "(hits & (h.distance <= leaves * 0.5f))"}},
+    {"the walk is a voxel off",
+     {"grid/walk.clh", "const index k = at + choose_index(a->up, (index)(1), (index)(0));",
+      "const index k = at + choose_index(a->up, (index)(2), (index)(0));"}},
+    {"a return is counted twice", {"torus/route.cl", "used[RAYA_HOME] - status[home_status];", "used[RAYA_HOME];"}},
+    {"a return is lost between boxes", {"torus/accept.cl", "return moves;", "return moves - (moves > 1);"}},
+    {"a shadow ray goes through what it hits",
+     {"torus/outcome.clh", "o.stopped = m & shadow & hits;", "o.stopped = m & shadow & hits & (h.distance > 1.0f);"}},
+    {"a pixel is made twice", {"torus/inject.cl", "p.misses = root || !in_window;", "p.misses = 1;"}},
+    {"windows are a row short",
+     {"torus/inject.cl", "p.row = root ? i : in_window ? header->window[0] + i",
+      "p.row = root ? i : in_window ? header->window[0] + i + 1"}},
+    {"refraction takes the reflected path",
+     {"torus/shade_packets.clh", "transmit, f->path.all | turn);", "transmit, f->path.all);"}},
+    {"a light's number is one off",
+     {"torus/shade_packets.clh", "shadow.light = (index)(l + 1);", "shadow.light = (index)(l);"}},
+    {"no room is reserved",
+     {"torus/trace_voxel.cl", "if (*all + need > capacity) continue;", "chosen.lane[lane] = RAYA_TRUE; continue;"}},
 };
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
-// The kernels with the fault in them.
-void copy_kernels(const Fault& fault, const std::filesystem::path& to) {
-    std::filesystem::copy(RAYA_SOURCE_DIR "/kernels", to, std::filesystem::copy_options::recursive);
-    std::string name = fault.file;
-    if (name.starts_with("kernels/")) name = name.substr(8);
-    std::string text = text_of(to / name);
-    const std::size_t at = text.find(fault.line);
-    INFO(name << " has no line " << fault.line);
-    REQUIRE(at != std::string::npos);
-    text.replace(at, std::string(fault.line).size(), fault.instead);
-    std::ofstream(to / name) << text;
-}
 
 struct Traffic {
     std::string image;
@@ -99,9 +82,8 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
 }
 
 // How a fault shows itself; empty where it does not.
-std::string noticed(Session& session, const Scene& scene, TorusCase c, const Traffic& right,
-                    const std::filesystem::path& kernels) {
-    c.sources.folder = kernels;
+std::string noticed(Session& session, const Scene& scene, TorusCase c, const Traffic& right, const SourcePatch& patch) {
+    c.sources.patches = {patch};
     try {
         const Traffic t = traffic_of(session, scene, c);
         if (t.image != right.image) return "image: " + t.image;
@@ -131,11 +113,10 @@ TEST_CASE("kernels with a fault are found out", "[torus][.][faults]") {
     for (std::size_t i = 0; i < 2; ++i) CHECK(right[i].image == ring_image(trials[i].scene, trials[i].c));
     for (const Fault& fault : kFaults) {
         CAPTURE(fault.what);
-        const ScratchFolder folder;
-        copy_kernels(fault, folder / "kernels");
+        check_patches({.patches = {fault.patch}});
         std::string how;
         for (std::size_t i = 0; i < 2 && how.empty(); ++i)
-            how = noticed(session, trials[i].scene, trials[i].c, right[i], folder / "kernels");
+            how = noticed(session, trials[i].scene, trials[i].c, right[i], fault.patch);
         WARN(fault.what << ": " << how);
         CHECK(how != "");
     }

@@ -1,0 +1,30 @@
+// A copy of the kernels with patches in it, for programs of their own that read it by --kernel-dir.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "host/embedded.hpp"
+#include "host/kernels/kernel_source.hpp"
+
+namespace raya {
+
+/// Writes all kernel files, patched, to the folder `to`, which it makes or writes over. Returns its name. Throws as
+/// check_patches() does; std::runtime_error where a file cannot be written.
+inline std::string write_kernels(const std::filesystem::path& to, const std::vector<SourcePatch>& patches = {}) {
+    const KernelSources sources{.patches = patches};
+    check_patches(sources);
+    const std::string kernels = "kernels/";
+    for (const auto& [path, text] : embedded_files()) {
+        if (!path.starts_with(kernels)) continue;
+        const std::string file = path.substr(kernels.size());
+        std::filesystem::create_directories((to / file).parent_path());
+        if (!(std::ofstream(to / file, std::ios::binary) << kernel_file(file, sources)).flush())
+            throw std::runtime_error("cannot write " + (to / file).string());
+    }
+    return to.string();
+}
+
+}  // namespace raya

@@ -1,0 +1,161 @@
+// verify fails when it must: each fault, put in on purpose, is seen by the checks that it concerns and by no others.
+#include <catch2/catch.hpp>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "host/verify/verify.hpp"
+#include "tests/verify/faults.hpp"
+
+namespace raya {
+namespace {
+
+using Names = std::set<std::string>;
+
+std::vector<Check> run(const std::vector<SourcePatch>& faults, const std::string& only) {
+    return verify(choose_device(""), {.sources = {.patches = faults}, .only = only});
+}
+
+// Names of those that failed.
+Names failures(const std::vector<Check>& checks) {
+    Names names;
+    for (const Check& check : checks)
+        if (check.verdict.outcome == Outcome::kFail) names.insert(check.name);
+    return names;
+}
+
+// Of every check's name what stands before its first comma, of those that ended so.
+Names beginnings(const std::vector<Check>& checks, Outcome outcome) {
+    Names names;
+    for (const Check& check : checks)
+        if (check.verdict.outcome == outcome) names.insert(check.name.substr(0, check.name.find(',')));
+    return names;
+}
+
+const Fault& first_fault(const std::vector<Check>& checks) {
+    for (const Check& check : checks)
+        if (check.verdict.outcome == Outcome::kFail) return check.verdict.fault;
+    throw std::logic_error("nothing failed");
+}
+
+// The kernel of a file, doing nothing.
+SourcePatch emptied(const std::string& file, const std::string& kernel) {
+    const std::string text = kernel_file(file);
+    const std::size_t at = text.find("void " + kernel + "(");
+    const std::string opening = text.substr(at, text.find("\n{", at) + 2 - at);
+    return {file, opening, opening + " return;"};
+}
+
+}  // namespace
+
+TEST_CASE("a wrong rounding is seen in the formats that round to nearest, no others", "[verify][faults]") {
+    const auto checks = run({kRoundingFault}, "number");
+    CHECK(beginnings(checks, Outcome::kFail) == Names{"e5m10", "e6m15", "e8m12"});
+    CHECK(beginnings(checks, Outcome::kPass) == Names{"fp32", "e6m15t", "e8m21t"});
+    const Fault& fault = first_fault(checks);
+    CHECK_THAT(fault.where, Catch::StartsWith("add(0x") && Catch::EndsWith("in e5m10"));
+    CHECK_THAT(fault.expected, Catch::StartsWith("0x"));
+    CHECK_THAT(fault.got, Catch::StartsWith("0x"));
+    CHECK(fault.expected != fault.got);
+    CHECK_THAT(fault.options, Catch::Contains("-DRAYA_FRACTION_BITS=10"));
+    CHECK_FALSE(fault.remedies.empty());
+}
+
+TEST_CASE("a contracted multiply-add is seen, and said to be one", "[verify][faults]") {
+    const auto checks = run({kContractionFault}, "number fp32");
+    REQUIRE(checks.size() == 1);
+    CHECK_THAT(checks[0].verdict.told, Catch::Contains("mul_add") && !Catch::Contains(" of mad"));
+    CHECK_THAT(checks[0].verdict.fault.where, Catch::StartsWith("mul_add("));
+}
+
+TEST_CASE("a division by the reciprocal is seen", "[verify][faults]") {
+    const auto checks = run({kDivisionFault}, "number fp32");
+    REQUIRE(failures(checks).size() == 1);
+    CHECK_THAT(checks[0].verdict.told, Catch::Contains(" of div") && !Catch::Contains(" of mul"));
+}
+
+TEST_CASE("a wrong rule for equal distances is seen where spheres coincide", "[verify][faults]") {
+    const auto checks = run({kTieFault}, ", fp32");
+    CHECK(beginnings(checks, Outcome::kFail) == Names{"known hits of spheres"});
+    CHECK(beginnings(checks, Outcome::kPass) ==
+          Names{"known hits of planes", "known hits of polygons", "known hits of cones", "grid"});
+    CHECK_THAT(first_fault(checks).where, Catch::Contains("equal distances"));
+    CHECK_THAT(first_fault(checks).expected, Catch::StartsWith("object 2"));
+    CHECK_THAT(first_fault(checks).got, Catch::StartsWith("object 3"));
+}
+
+TEST_CASE("a walk that ends too soon is seen by hits that lie farther away", "[verify][faults]") {
+    const auto checks = run({kWalkFault}, ", fp32");
+    CHECK(failures(checks).size() == 5);
+    CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_grid"));
+}
+
+TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify][faults]") {
+    struct Row {
+        SourcePatch fault;
+        const char* only;
+        Names wrong;
+    };
+    const Row rows[] = {
+        {kRoundingFault, "image cones e5m10", {"cones e5m10: cyclic:8 on 20, division refined"}},
+        {kContractionFault, "image glass fp32: cyclic:8 on 20", {"glass fp32: cyclic:8 on 20"}},
+        {kDivisionFault, "image ties fp32: blocks on 5, global words, division refined", {}},
+        {kDivisionFault,
+         "image glass fp32: cyclic:8 on 7",
+         {"glass fp32: cyclic:8 on 7, block fold, 9 pixels a launch"}},
+        {kTieFault, "image ties", {"ties fp32: blocks on 5, global words, division refined"}},
+        {kWalkFault, "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
+        {kWalkFault, "image polygons fp32: torus3d 2x2x2", {"polygons fp32: torus3d 2x2x2"}}};
+    for (const Row& row : rows) {
+        CAPTURE(row.fault.replace, row.only);
+        const auto checks = run({row.fault}, row.only);
+        CHECK(checks.size() == 1);
+        CHECK(failures(checks) == row.wrong);
+    }
+}
+
+TEST_CASE("a kernel that does nothing finds no right answers", "[verify][faults]") {
+    struct Row {
+        const char *file, *kernel, *only;
+        std::size_t wrong;
+    };
+    const Row rows[] = {{"verify/hits.cl", "hits_of_all", ", fp32", 5},
+                        {"verify/hits.cl", "hits_by_grid", ", fp32", 5},
+                        {"verify/machine.cl", "find_owners", "mapping", 7},
+                        {"verify/machine.cl", "find_ways", "ways", 1},
+                        {"verify/machine.cl", "turn_round", "local memory", 2},
+                        {"verify/operations.cl", "operations", "number fp32", 1}};
+    for (const Row& row : rows) {
+        CAPTURE(row.kernel);
+        const auto checks = run({emptied(row.file, row.kernel)}, row.only);
+        CHECK(failures(checks).size() == row.wrong);
+        CHECK(checks.size() == row.wrong);
+    }
+}
+
+TEST_CASE("faults of whole numbers and barriers are seen where they are", "[verify][faults]") {
+    CHECK(failures(run({}, "machine")) == Names{});
+    CHECK(failures(run({kMappingFault}, "machine")) == Names{"mapping: cyclic, block fold", "mapping: blocks"});
+    CHECK(failures(run({kBarrierFault}, "machine")) == Names{"local memory and barriers, 32 work-items"});
+}
+
+TEST_CASE("a wrong border of the filter is seen in its images alone, with the pixel", "[verify][faults]") {
+    const auto checks = run({kBorderFault}, "image glass");
+    CHECK(failures(checks) == Names{"glass fp32 filter: cyclic:5 on 10"});
+    CHECK(checks.size() > 4);
+    CHECK_THAT(first_fault(checks).where, Catch::StartsWith("row 0, column 19"));
+}
+
+TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify][faults]") {
+    const VerifySettings settings{.sources = {"/no/such/folder"}, .only = "machine"};
+    const auto checks = verify(choose_device(""), settings);
+    CHECK(count_of(checks, Outcome::kFail) > 5);
+    CHECK(count_of(checks, Outcome::kPass) > 5);  // transfers need no kernel
+}
+
+TEST_CASE("a patch that does not fit ends verify before any check", "[verify][faults]") {
+    CHECK_THROWS_AS(run({{"ring/trace.cl", "no such text", ""}}, "machine"), std::logic_error);
+}
+
+}  // namespace raya
