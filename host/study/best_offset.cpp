@@ -1,205 +1,158 @@
 // The best offset for the user's scene: balance against communication, for each number of PEs and anti-aliasing.
-#include <fmt/format.h>
+#include <ranges>
+#include <span>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-#include "host/ring/schedule.hpp"
-#include "host/study/laboratory.hpp"
+#include "host/study/arrays.hpp"
 #include "host/study/offset_times.hpp"
+#include "host/study/prose.hpp"
+#include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
 
 namespace raya {
 namespace {
 
-constexpr const char* kName = "best-offset";
-constexpr std::array kMethods = {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample};
+const std::string kName = "best-offset";
 
-// One number of PEs and one way of anti-aliasing.
+// One scene, one number of PEs and one way of anti-aliasing.
 struct Choice {
-    std::uint32_t pes = 0, root = 0;  // root: round(sqrt(P)) modulo W, the paper's best
+    std::string scene, format;
+    std::uint32_t size = 0, pes = 0, root = 0;  // root: round(sqrt(P)) modulo W, the paper's best
     AntialiasMethod method = AntialiasMethod::kNone;
-    std::vector<OffsetTime> times;
-    std::vector<double> imbalance;          // u of the first pass
-    std::uint32_t best = 0, best_near = 0;  // of all offsets, of 0..root
+    std::vector<OffsetTime> times = {};
+    OffsetTime best = {}, best_near = {};  // of all offsets, of 0..root
 
-    double total(std::uint32_t p) const { return times[p].total_ms(); }
-    double loss(std::uint32_t p) const { return total(best) > 0 ? 100 * (total(p) / total(best) - 1) : 0; }  // %
+    std::string antialias() const { return antialias_name(method); }
+    std::string method_text() const {
+        return method == AntialiasMethod::kNone ? "without anti-aliasing" : "with --antialias " + antialias();
+    }
+    double loss(const OffsetTime& time) const {  // %
+        return best.total_ms() > 0 ? 100 * (time.total_ms() / best.total_ms() - 1) : 0;
+    }
 };
 
-struct SceneChoices {
-    std::string label;
-    std::uint32_t size = 0;
-    std::string format;
-    std::vector<Choice> choices;  // numbers of PEs in order, the methods for each
-};
+// Of one scene: numbers of PEs in order, the methods for each. The array with as many PEs as columns comes first.
+using Choices = std::vector<Choice>;
 
-Choice choice_of(const Costs& costs, std::uint32_t pes, AntialiasMethod method) {
-    const std::uint32_t size = costs.trace.width;
-    Choice choice{.pes = pes, .method = method, .times = offset_times(costs, pes, method), .imbalance = {}};
-    choice.root = static_cast<std::uint32_t>(std::lround(std::sqrt(pes))) % size;
-    std::vector<std::uint32_t> offsets(size);
-    for (std::uint32_t p = 0; p < size; ++p) offsets[p] = p;
-    choice.imbalance = imbalance_of_offsets(costs.trace, pes, RAYA_FOLD_CYCLIC, offsets);
-    choice.best = best_offset_of(choice.times, choice.times.size());
-    choice.best_near = best_offset_of(choice.times, choice.root + 1);
-    return choice;
-}
-
-SceneChoices choices_of(Laboratory& lab, const LabelledScene& scene) {
-    SceneChoices all{scene.label, lab.size(usual_size(scene.scene)), format_name(format_for(scene.scene)), {}};
-    const Costs& costs = lab.costs(scene, all.size, AntialiasMethod::kSupersample);
-    std::vector<std::uint32_t> pes = {all.size};
-    for (const std::uint32_t more : {256u, 64u})
-        if (more != all.size && more <= all.size * all.size) pes.push_back(more);
-    for (const std::uint32_t p : pes)
-        for (const AntialiasMethod method : kMethods) all.choices.push_back(choice_of(costs, p, method));
+Choices choices_of(Laboratory& lab, const LabelledScene& scene) {
+    const std::uint32_t size = lab.size(usual_size(scene.scene));
+    const Costs& costs = lab.costs(scene, size, AntialiasMethod::kSupersample);
+    Choices all;
+    for (const std::uint32_t pes : {size, 256u, 64u}) {
+        if (!all.empty() && (pes == size || pes > size * size)) continue;
+        for (const AntialiasMethod method :
+             {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
+            Choice choice{scene.label, format_name(format_for(scene.scene)), size, pes, root_offset(pes) % size,
+                          method,      offset_times(costs, pes, method)};
+            choice.best = least(choice.times, &OffsetTime::total_ms);
+            choice.best_near = least(std::span(choice.times).first(choice.root + 1), &OffsetTime::total_ms);
+            all.push_back(std::move(choice));
+        }
+    }
     return all;
 }
 
-std::string without_or_with(AntialiasMethod method) {
-    return method == AntialiasMethod::kNone ? "without anti-aliasing" : "with --antialias " + antialias_name(method);
+std::string chief_finding(const Choices& scene) {
+    const Choice& first = scene.front();
+    const Choices answer = where(scene, [&](const Choice& choice) { return choice.pes == first.pes; });
+    return fmt::format(
+        "Use {}: {} at {} x {} pixels on {} PEs.",
+        joined(answer, ", ",
+               [](const Choice& c) { return fmt::format("--offset {} {}", c.best.offset, c.method_text()); }),
+        first.scene, first.size, first.size, first.pes);
 }
 
-// The array with as many PEs as columns comes first: its three choices answer the question.
-std::string chief_finding(const SceneChoices& scene) {
-    std::string text;
-    for (const Choice& choice : scene.choices) {
-        if (choice.pes != scene.choices.front().pes) break;
-        text +=
-            fmt::format("{}--offset {} {}", text.empty() ? "Use " : ", ", choice.best, without_or_with(choice.method));
-    }
-    return fmt::format("{}: {} at {} x {} pixels on {} PEs.", text, scene.label, scene.size, scene.size,
-                       scene.choices.front().pes);
-}
-
-std::string choice_finding(const SceneChoices& scene, const Choice& c) {
-    const OffsetTime& t = c.times[c.best];
-    std::string near = c.best_near == c.best ? fmt::format("no offset beyond sqrt(P) = {} is better", c.root)
-                                             : fmt::format("the best of 0..sqrt(P) is p = {}, {:.1f} % slower",
-                                                           c.best_near, c.loss(c.best_near));
+std::string choice_finding(const Choice& c) {
+    const std::string near =
+        c.best_near.offset == c.best.offset
+            ? fmt::format("no offset beyond sqrt(P) = {} is better", c.root)
+            : fmt::format("the best of 0..sqrt(P) is p = {}, {:.1f} % slower", c.best_near.offset, c.loss(c.best_near));
     const std::string root =
-        c.root == c.best ? "" : fmt::format("p = {} takes {:.1f} % longer, ", c.root, c.loss(c.root));
+        c.root == c.best.offset ? "" : fmt::format("p = {} takes {:.1f} % longer, ", c.root, c.loss(c.times[c.root]));
+    const double total = c.best.total_ms();
     return fmt::format(
         "{}, {} PEs, {}: p = {} takes {:.1f} ms, {:.1f} % of it on the ring, u of the first pass {:.3f}; {}; {}p = 0 "
         "takes {:.1f} % longer.",
-        scene.label, c.pes, without_or_with(c.method), c.best, t.total_ms(),
-        t.total_ms() > 0 ? 100 * t.ring_ms / t.total_ms() : 0, c.imbalance[c.best], near, root, c.loss(0));
+        c.scene, c.pes, c.method_text(), c.best.offset, total, total > 0 ? 100 * c.best.ring_ms / total : 0,
+        c.best.imbalance, near, root, c.loss(c.times[0]));
 }
 
-std::vector<std::string> findings_of(const std::vector<SceneChoices>& scenes) {
-    std::vector<std::string> findings;
-    for (const SceneChoices& scene : scenes) findings.push_back(chief_finding(scene));
-    for (const SceneChoices& scene : scenes)
-        for (const Choice& choice : scene.choices) findings.push_back(choice_finding(scene, choice));
-    return findings;
-}
+// Every offset of a choice.
+struct Tried {
+    const Choice* choice;
+    const OffsetTime* time;
+};
 
-StudyTable best_table(const std::vector<SceneChoices>& scenes) {
-    StudyTable table{
-        kName,
-        "Best offsets, modelled, nothing fitted",
-        {"scene", "size", "PEs", "anti-aliasing", "best p", "time (ms)", "of it ring (ms)", "u, first pass",
-         "best p of 0..sqrt(P)", "its time (ms)", "its u", "p = sqrt(P) (ms)", "p = 0 (ms)"},
-        {},
-        true};
-    for (const SceneChoices& scene : scenes)
-        for (const Choice& c : scene.choices)
-            table.rows.push_back({scene.label, std::int64_t{scene.size}, std::int64_t{c.pes}, antialias_name(c.method),
-                                  std::int64_t{c.best}, c.total(c.best), c.times[c.best].ring_ms, c.imbalance[c.best],
-                                  std::int64_t{c.best_near}, c.total(c.best_near), c.imbalance[c.best_near],
-                                  c.total(c.root), c.total(0)});
-    return table;
-}
-
-StudyTable long_table(const std::vector<SceneChoices>& scenes) {
-    StudyTable table{std::string(kName) + "-all",
-                     "Every offset",
-                     {"scene", "PEs", "anti-aliasing", "p", "u, first pass", "first pass (ms)",
-                      "neighbours' arithmetic (ms)", "supersampling (ms)", "rotations", "ring (ms)", "total (ms)"},
-                     {},
-                     false};
-    for (const SceneChoices& scene : scenes)
-        for (const Choice& c : scene.choices)
-            for (std::size_t p = 0; p < c.times.size(); ++p) {
-                const OffsetTime& t = c.times[p];
-                table.rows.push_back({scene.label, std::int64_t{c.pes}, antialias_name(c.method),
-                                      static_cast<std::int64_t>(p), c.imbalance[p], t.trace_ms, t.smooth_ms,
-                                      t.supersample_ms, static_cast<std::int64_t>(t.rotations), t.ring_ms,
-                                      t.total_ms()});
-            }
-    return table;
+std::vector<StudyTable> tables_of(const Choices& choices) {
+    std::vector<Tried> all;
+    for (const Choice& choice : choices)
+        for (const OffsetTime& time : choice.times) all.push_back({&choice, &time});
+    const auto of = [](auto figure) { return [=](const Tried& tried) { return std::invoke(figure, *tried.time); }; };
+    const auto best = [](auto figure) { return [=](const Choice& c) { return std::invoke(figure, c.best); }; };
+    const auto near = [](auto figure) { return [=](const Choice& c) { return std::invoke(figure, c.best_near); }; };
+    return {table_of(kName, "Best offsets, modelled, nothing fitted", choices,
+                     {{"scene", &Choice::scene},
+                      {"size", &Choice::size},
+                      {"PEs", &Choice::pes},
+                      {"anti-aliasing", &Choice::antialias},
+                      {"best p", best(&OffsetTime::offset)},
+                      {"time", best(&OffsetTime::total_ms), "ms"},
+                      {"of it ring", best(&OffsetTime::ring_ms), "ms"},
+                      {"u, first pass", best(&OffsetTime::imbalance)},
+                      {"best p of 0..sqrt(P)", near(&OffsetTime::offset)},
+                      {"its time", near(&OffsetTime::total_ms), "ms"},
+                      {"its u", near(&OffsetTime::imbalance)},
+                      {"p = sqrt(P)", [](const Choice& c) { return c.times[c.root].total_ms(); }, "ms"},
+                      {"p = 0", [](const Choice& c) { return c.times[0].total_ms(); }, "ms"}}),
+            table_of(kName + "-all", "Every offset", all,
+                     {{"scene", [](const Tried& tried) { return tried.choice->scene; }},
+                      {"PEs", [](const Tried& tried) { return tried.choice->pes; }},
+                      {"anti-aliasing", [](const Tried& tried) { return tried.choice->antialias(); }},
+                      {"p", of(&OffsetTime::offset)},
+                      {"u, first pass", of(&OffsetTime::imbalance)},
+                      {"first pass", of(&OffsetTime::trace_ms), "ms"},
+                      {"neighbours' arithmetic", of(&OffsetTime::smooth_ms), "ms"},
+                      {"supersampling", of(&OffsetTime::supersample_ms), "ms"},
+                      {"rotations", of(&OffsetTime::rotations)},
+                      {"ring", of(&OffsetTime::ring_ms), "ms"},
+                      {"total", of(&OffsetTime::total_ms), "ms"}},
+                     false)};
 }
 
 // A plot for each number of PEs, a line for each way of anti-aliasing, its best offset marked.
-std::vector<StudyPlot> plots_of(const SceneChoices& scene, std::size_t number) {
-    std::vector<StudyPlot> plots;
-    for (const Choice& c : scene.choices) {
+void add_plots(std::vector<StudyPlot>& plots, const Choices& scene, std::size_t number) {
+    for (const Choice& c : scene) {
         const std::string name = fmt::format("{}-{}-{}pes", kName, number, c.pes);
         if (plots.empty() || plots.back().name != name)
-            plots.push_back({name,
-                             fmt::format("{} at {} x {} on {} PEs", scene.label, scene.size, scene.size, c.pes),
-                             "offset p (pixels)",
-                             "computing and rotations (modelled ms)",
-                             false,
-                             true,
-                             {}});
-        PlotSeries line{c.method == AntialiasMethod::kNone ? "no anti-aliasing" : antialias_name(c.method),
-                        {},
-                        {},
-                        PlotStyle::kLine};
-        for (std::size_t p = 0; p < c.times.size(); ++p) {
-            line.x.push_back(static_cast<double>(p));
-            line.y.push_back(c.times[p].total_ms());
-        }
-        plots.back().series.push_back(line);
-        plots.back().series.push_back({fmt::format("its best: p = {}", c.best),
-                                       {static_cast<double>(c.best)},
-                                       {c.total(c.best)},
-                                       PlotStyle::kPoints});
+            plots.push_back({name, fmt::format("{} at {} x {} on {} PEs", c.scene, c.size, c.size, c.pes),
+                             "offset p (pixels)", "computing and rotations (modelled ms)", Axes::kLogY});
+        plots.back().series.push_back(line(c.method == AntialiasMethod::kNone ? "no anti-aliasing" : c.antialias(),
+                                           c.times, &OffsetTime::offset, &OffsetTime::total_ms));
+        plots.back().series.push_back(line(fmt::format("its best: p = {}", c.best.offset), std::span(&c.best, 1),
+                                           &OffsetTime::offset, &OffsetTime::total_ms, PlotStyle::kPoints));
     }
-    return plots;
-}
-
-std::vector<Comparison> comparisons_of(const SceneChoices& scene) {
-    std::vector<Comparison> comparisons;
-    for (const Choice& c : scene.choices)
-        comparisons.push_back({fmt::format("best p, {} PEs, {}", c.pes, antialias_name(c.method)),
-                               "",
-                               {},
-                               static_cast<double>(c.best),
-                               fmt::format("u of the first pass {:.3f}; the paper's rule, sqrt(P), is p = {}",
-                                           c.imbalance[c.best], c.root)});
-    return comparisons;
 }
 
 }  // namespace
 
-StudyPage study_best_offset(Laboratory& lab, const std::vector<LabelledScene>& given) {
-    std::vector<SceneChoices> scenes;
-    for (const LabelledScene& scene : given.empty() ? std::vector{embedded_scene("centre")} : given)
-        scenes.push_back(choices_of(lab, scene));
-    StudyPage page;
-    page.name = kName;
-    page.title = "The best offset for a scene";
-    page.question = "Which offset of the cyclic mapping makes this image soonest, communication in the balance?";
-    page.method = {
-        "For every offset: the busiest PE's modelled cycles in the first pass and in supersampling, the arithmetic "
-        "between neighbours, and the rotations that bring the neighbours by the shortest route, on the SPA's rates. No "
-        "factor is fitted. Broadcast and image transfer take the same for every offset and are left out.",
-        "A PE for each column, 256 PEs and 64; fold cyclic; sqrt(P) is rounded. PEs have memory for the shares that go "
-        "round, which the SPA's have only for small ones.",
-        "A scene is rendered at its own size, if that is square, and smaller where its objects would make that take "
-        "minutes; --size overrides. Of equal offsets the smallest is named."};
-    page.comparisons = comparisons_of(scenes.front());
-    page.tables = {best_table(scenes), long_table(scenes)};
-    for (std::size_t i = 0; i < scenes.size(); ++i)
-        for (StudyPlot& plot : plots_of(scenes[i], i + 1)) page.plots.push_back(std::move(plot));
-    page.findings = findings_of(scenes);
-    for (const SceneChoices& scene : scenes)
-        page.settings["scenes"].push_back(
-            {{"scene", scene.label}, {"size", scene.size}, {"format", scene.format}, {"fold", "cyclic"}});
+StudyPage study_best_offset(Laboratory& lab, const Scenes& given) {
+    const auto scenes = each(given.empty() ? Scenes{embedded_scene("centre")} : given,
+                             [&](const LabelledScene& scene) { return choices_of(lab, scene); });
+    Choices all;
+    for (const Choices& scene : scenes) all.insert(all.end(), scene.begin(), scene.end());
+    nlohmann::ordered_json settings;
+    for (const Choices& scene : scenes)
+        settings["scenes"].push_back(
+            {{"scene", scene[0].scene}, {"size", scene[0].size}, {"format", scene[0].format}, {"fold", "cyclic"}});
+    StudyPage page = page_about(kName, settings);
+    for (const Choice& c : scenes.front())
+        page.comparisons.push_back({fmt::format("best p, {} PEs, {}", c.pes, c.antialias()), "", std::nullopt,
+                                    double(c.best.offset),
+                                    fmt::format("u of the first pass {:.3f}; the paper's rule, sqrt(P), is p = {}",
+                                                c.best.imbalance, c.root)});
+    for (const Choices& scene : scenes) page.findings.push_back(chief_finding(scene));
+    for (const Choice& choice : all) page.findings.push_back(choice_finding(choice));
+    page.tables = tables_of(all);
+    for (std::size_t i = 0; i < scenes.size(); ++i) add_plots(page.plots, scenes[i], i + 1);
     return page;
 }
 

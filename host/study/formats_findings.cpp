@@ -1,17 +1,15 @@
-#include "host/study/formats_findings.hpp"
-
-#include <fmt/format.h>
-
-#include <algorithm>
+// What the figures of a formats study say, in sentences made from them alone.
 #include <cmath>
 #include <numeric>
+
+#include "host/study/formats_report.hpp"
+#include "host/study/rows.hpp"
 
 namespace raya {
 namespace {
 
 const FormatRow* row_of(const SceneRows& scene, const NumberFormat& format) {
-    const auto found =
-        std::find_if(scene.rows.begin(), scene.rows.end(), [&](const FormatRow& row) { return row.format == format; });
+    const auto found = std::ranges::find(scene.rows, format, &FormatRow::format);
     return found == scene.rows.end() ? nullptr : &*found;
 }
 
@@ -19,8 +17,7 @@ const FormatRow* row_of(const SceneRows& scene, const NumberFormat& format) {
 void add_gains(const FormatsStudy& study, const NumberFormat& from, const NumberFormat& to,
                std::vector<double>& gains) {
     for (const SceneRows& scene : study.scenes) {
-        const FormatRow* const before = row_of(scene, from);
-        const FormatRow* const after = row_of(scene, to);
+        const FormatRow *const before = row_of(scene, from), *const after = row_of(scene, to);
         if (before == nullptr || after == nullptr) continue;
         const double gain = after->difference.psnr_db - before->difference.psnr_db;
         if (std::isfinite(gain)) gains.push_back(gain);
@@ -32,85 +29,79 @@ double tenth(double value) { return std::round(10 * value) / 10 + 0.0; }
 
 // "+1.2 dB on average (-0.3 to +2.0)"
 std::string spread(const std::vector<double>& gains) {
-    const auto [least, most] = std::minmax_element(gains.begin(), gains.end());
     const double mean = std::accumulate(gains.begin(), gains.end(), 0.0) / static_cast<double>(gains.size());
-    return fmt::format("{:+.1f} dB on average ({:+.1f} to {:+.1f})", tenth(mean), tenth(*least), tenth(*most));
+    return fmt::format("{:+.1f} dB on average ({:+.1f} to {:+.1f})", tenth(mean), tenth(std::ranges::min(gains)),
+                       tenth(std::ranges::max(gains)));
 }
 
-void add_spa_beside_fp32(const FormatsStudy& study, std::vector<std::string>& sentences) {
+// Each of these is empty where the study has no such formats.
+
+std::string finding_of_spa(const FormatsStudy& study) {
     const auto all = formats_overview(study);
-    const auto spa =
-        std::find_if(all.begin(), all.end(), [](const auto& o) { return o.format == parse_format("spa22"); });
-    if (spa == all.end()) return;
+    const auto spa = std::ranges::find(all, parse_format("spa22"), &FormatOverview::format);
+    if (spa == all.end()) return {};
     const FormatOverview& fp32 = all.front();
-    sentences.push_back(fmt::format(
-        "spa22 (e6m15) has a PSNR of {:.1f} to {:.1f} dB, fp32 one of {:.1f} to {:.1f} dB; {:.2f} to {:.2f} % of its "
-        "pixels are off by more than 1/255, {:.2f} to {:.2f} % of fp32's; it takes {:.2f} to {:.2f} times fp32's "
-        "kernel time (measured).",
-        spa->lowest_psnr_db, spa->highest_psnr_db, fp32.lowest_psnr_db, fp32.highest_psnr_db,
-        100 * spa->lowest_share_over, 100 * spa->highest_share_over, 100 * fp32.lowest_share_over,
-        100 * fp32.highest_share_over, spa->lowest_ratio, spa->highest_ratio));
+    const auto text = [](double factor, const Range& range, int digits) {
+        return fmt::format("{:.{}f} to {:.{}f}", factor * range.lowest, digits, factor * range.highest, digits);
+    };
+    return fmt::format(
+        "spa22 (e6m15) has a PSNR of {} dB, fp32 one of {} dB; {} % of its pixels are off by more than 1/255, {} % of "
+        "fp32's; it takes {} times fp32's kernel time (measured).",
+        text(1, spa->psnr_db, 1), text(1, fp32.psnr_db, 1), text(100, spa->share_over, 2),
+        text(100, fp32.share_over, 2), text(1, spa->ratio, 2));
 }
 
-void add_rounding(const FormatsStudy& study, std::vector<std::string>& sentences) {
+std::string finding_of_rounding(const FormatsStudy& study) {
     std::vector<double> gains;
-    if (study.scenes.empty()) return;
+    if (study.scenes.empty()) return {};
     for (const FormatRow& row : study.scenes.front().rows) {
         if (!row.format.truncates) continue;
         NumberFormat nearest = row.format;
         nearest.truncates = false;
         add_gains(study, row.format, nearest, gains);
     }
-    if (gains.empty()) return;
-    const auto better = std::count_if(gains.begin(), gains.end(), [](double gain) { return gain > 0; });
-    sentences.push_back(
-        fmt::format("Rounding to nearest has a higher PSNR than truncation in {} of {} pairs of the same format and "
-                    "scene: {}.",
-                    better, gains.size(), spread(gains)));
+    if (gains.empty()) return {};
+    return fmt::format(
+        "Rounding to nearest has a higher PSNR than truncation in {} of {} pairs of the same format and scene: {}.",
+        std::ranges::count_if(gains, [](double gain) { return gain > 0; }), gains.size(), spread(gains));
 }
 
-void add_change(const FormatsStudy& study, const char* from, const char* to, std::vector<std::string>& sentences) {
+std::string finding_of_change(const FormatsStudy& study, const char* from, const char* to) {
     std::vector<double> gains;
     add_gains(study, parse_format(from), parse_format(to), gains);
-    if (!gains.empty())
-        sentences.push_back(fmt::format("From {} to {} the PSNR changes by {}.", from, to, spread(gains)));
+    return gains.empty() ? "" : fmt::format("From {} to {} the PSNR changes by {}.", from, to, spread(gains));
 }
 
-void include(FormatOverview& overview, const FormatRow& row, const std::string& label) {
-    const ImageDifference& d = row.difference;
-    if (d.psnr_db < overview.lowest_psnr_db) overview.worst_scene = label;
-    overview.lowest_psnr_db = std::min(overview.lowest_psnr_db, d.psnr_db);
-    overview.highest_psnr_db = std::max(overview.highest_psnr_db, d.psnr_db);
-    overview.largest = std::max(overview.largest, d.largest);
-    overview.lowest_share_over = std::min(overview.lowest_share_over, d.share_over);
-    overview.highest_share_over = std::max(overview.highest_share_over, d.share_over);
-    overview.lowest_ratio = std::min(overview.lowest_ratio, row.ratio_to_fp32);
-    overview.highest_ratio = std::max(overview.highest_ratio, row.ratio_to_fp32);
+// Of one figure in the rows of a format.
+template <class Rows, class Figure>
+Range range_of(const Rows& rows, Figure figure) {
+    const auto all = each(rows, figure);
+    return {std::ranges::min(all), std::ranges::max(all)};
 }
 
 }  // namespace
 
 std::vector<FormatOverview> formats_overview(const FormatsStudy& study) {
     std::vector<FormatOverview> all;
-    if (study.scenes.empty()) return all;
-    for (const FormatRow& row : study.scenes.front().rows) {
-        const ImageDifference& d = row.difference;
-        all.push_back({row.format, d.psnr_db, d.psnr_db, study.scenes.front().label, d.largest, d.share_over,
-                       d.share_over, row.ratio_to_fp32, row.ratio_to_fp32});
+    const auto psnr = [](const FormatRow& row) { return row.difference.psnr_db; };
+    const std::size_t formats = study.scenes.empty() ? 0 : study.scenes.front().rows.size();
+    for (std::size_t i = 0; i < formats; ++i) {
+        const auto rows = each(study.scenes, [i](const SceneRows& scene) { return scene.rows[i]; });
+        const auto largest = each(rows, [](const FormatRow& row) { return row.difference.largest; });
+        all.push_back({rows[0].format, range_of(rows, psnr),
+                       least(study.scenes, [&](const SceneRows& scene) { return psnr(scene.rows[i]); }).label,
+                       std::ranges::max(largest),
+                       range_of(rows, [](const FormatRow& row) { return row.difference.share_over; }),
+                       range_of(rows, &FormatRow::ratio_to_fp32)});
     }
-    for (const SceneRows& scene : study.scenes)
-        for (std::size_t i = 0; i < scene.rows.size(); ++i) include(all[i], scene.rows[i], scene.label);
     return all;
 }
 
 std::vector<std::string> formats_findings(const FormatsStudy& study) {
-    std::vector<std::string> sentences;
-    add_spa_beside_fp32(study, sentences);
-    add_rounding(study, sentences);
-    add_change(study, "e6m13", "e6m15", sentences);
-    add_change(study, "e8m15", "e8m21", sentences);
-    add_change(study, "e6m15", "e8m15", sentences);
-    return sentences;
+    const std::vector<std::string> all = {
+        finding_of_spa(study), finding_of_rounding(study), finding_of_change(study, "e6m13", "e6m15"),
+        finding_of_change(study, "e8m15", "e8m21"), finding_of_change(study, "e6m15", "e8m15")};
+    return where(all, [](const std::string& sentence) { return !sentence.empty(); });
 }
 
 }  // namespace raya

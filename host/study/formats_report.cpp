@@ -1,10 +1,9 @@
 #include "host/study/formats_report.hpp"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
-#include "host/study/formats_findings.hpp"
+#include "host/study/page_writer.hpp"
+#include "host/study/rows.hpp"
 #include "host/study/text_tables.hpp"
 
 namespace raya {
@@ -12,33 +11,43 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-const char* rounding_name(const NumberFormat& format) { return format.truncates ? "truncate" : "nearest"; }
-
 // Where kernel_s comes from.
 const char* clock_name(const FormatsStudy& study) { return study.device.profiling ? "device" : "host"; }
 
+// What CSV and JSON have of a row, both under these names; what is measured stands apart in JSON.
+const std::string kMeasured = "measured_";
+const std::vector<Column<FormatRow>>& columns() {
+    static const std::vector<Column<FormatRow>> all = {
+        {"format", [](const FormatRow& row) { return format_name(row.format); }},
+        {"exponent_bits", [](const FormatRow& row) { return row.format.exponent_bits; }},
+        {"fraction_bits", [](const FormatRow& row) { return row.format.fraction_bits; }},
+        {"rounding", [](const FormatRow& row) { return row.format.truncates ? "truncate" : "nearest"; }},
+        {"psnr_db", [](const FormatRow& row) { return row.difference.psnr_db; }},
+        {"largest_error", [](const FormatRow& row) { return row.difference.largest; }},
+        {"pixels_over", [](const FormatRow& row) { return row.difference.over; }},
+        {"share_over", [](const FormatRow& row) { return row.difference.share_over; }},
+        {"image_hash", &FormatRow::image_hash},
+        {kMeasured + "kernel_s", &FormatRow::kernel_s},
+        {kMeasured + "ratio_to_fp32", &FormatRow::ratio_to_fp32}};
+    return all;
+}
+
 nlohmann::ordered_json row_json(const FormatRow& row) {
-    const ImageDifference& d = row.difference;
-    return {{"format", format_name(row.format)},
-            {"exponent_bits", row.format.exponent_bits},
-            {"fraction_bits", row.format.fraction_bits},
-            {"rounding", rounding_name(row.format)},
-            {"psnr_db", json_number(d.psnr_db)},
-            {"largest_error", json_number(d.largest)},
-            {"pixels_over", d.over},
-            {"share_over", d.share_over},
-            {"image_hash", row.image_hash},
-            {"measured", {{"kernel_s", row.kernel_s}, {"ratio_to_fp32", row.ratio_to_fp32}}}};
+    nlohmann::ordered_json json;
+    for (const auto& [name, figure, unit] : columns())
+        if (name.starts_with(kMeasured))
+            json["measured"][name.substr(kMeasured.size())] = cell_json(figure(row));
+        else
+            json[name] = cell_json(figure(row));
+    return json;
 }
 
 nlohmann::ordered_json scene_json(const SceneRows& scene) {
-    auto rows = nlohmann::ordered_json::array();
-    for (const FormatRow& row : scene.rows) rows.push_back(row_json(row));
-    return {{"scene", scene.label}, {"objects", scene.objects}, {"formats", rows}};
+    return {{"scene", scene.label}, {"objects", scene.objects}, {"formats", each(scene.rows, row_json)}};
 }
 
-std::string ratio_range(double lowest, double highest) {
-    const std::string from = fmt::format("{:.2f}", lowest), to = fmt::format("{:.2f}", highest);
+std::string ratio_range(const Range& range) {
+    const std::string from = fmt::format("{:.2f}", range.lowest), to = fmt::format("{:.2f}", range.highest);
     return from == to ? from : from + " to " + to;
 }
 
@@ -67,23 +76,17 @@ std::string method(const FormatsStudy& study) {
 }  // namespace
 
 std::string formats_csv(const FormatsStudy& study) {
-    std::string text =
-        "scene,format,exponent_bits,fraction_bits,rounding,psnr_db,largest_error,pixels_over,share_over,image_hash,"
-        "measured_kernel_s,measured_ratio_to_fp32\n";
+    StudyTable all{"formats", {}, {{"scene"}}, {}};
+    for (const Column<FormatRow>& column : columns()) all.columns.push_back({column.label});
     for (const SceneRows& scene : study.scenes)
-        for (const FormatRow& row : scene.rows) {
-            const ImageDifference& d = row.difference;
-            text +=
-                fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(scene.label), format_name(row.format),
-                            row.format.exponent_bits, row.format.fraction_bits, rounding_name(row.format), d.psnr_db,
-                            d.largest, d.over, d.share_over, row.image_hash, row.kernel_s, row.ratio_to_fp32);
+        for (auto& cells : table_of("", "", scene.rows, columns()).rows) {
+            cells.insert(cells.begin(), scene.label);
+            all.rows.push_back(std::move(cells));
         }
-    return text;
+    return table_csv(all);
 }
 
 nlohmann::ordered_json formats_json(const FormatsStudy& study) {
-    auto scenes = nlohmann::ordered_json::array();
-    for (const SceneRows& scene : study.scenes) scenes.push_back(scene_json(scene));
     return {{"study", "formats"},
             {"image", {{"width", study.width}, {"height", study.height}}},
             {"machine",
@@ -97,7 +100,7 @@ nlohmann::ordered_json formats_json(const FormatsStudy& study) {
             {"limit", kShownStep},
             {"measured", {{"clock", clock_name(study)}, {"samples", study.samples}}},
             {"seen", formats_findings(study)},
-            {"scenes", scenes}};
+            {"scenes", each(study.scenes, scene_json)}};
 }
 
 std::string formats_markdown(const FormatsStudy& study) {
@@ -116,9 +119,9 @@ Cells formats_overview_cells(const FormatsStudy& study) {
     Cells cells = {
         {"format", "lowest PSNR dB", "of scene", "largest error", "most off by > 1/255, %", "time / fp32 (measured)"}};
     for (const FormatOverview& o : formats_overview(study))
-        cells.push_back({format_name(o.format), fmt::format("{:.2f}", o.lowest_psnr_db), o.worst_scene,
-                         fmt::format("{:.4f}", o.largest), fmt::format("{:.3f}", 100 * o.highest_share_over),
-                         ratio_range(o.lowest_ratio, o.highest_ratio)});
+        cells.push_back({format_name(o.format), fmt::format("{:.2f}", o.psnr_db.lowest), o.worst_scene,
+                         fmt::format("{:.4f}", o.largest), fmt::format("{:.3f}", 100 * o.share_over.highest),
+                         ratio_range(o.ratio)});
     return cells;
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 
+#include "host/grid/partition.hpp"
+
 namespace raya::paper {
 
 // Yoshitani & Yamazaki, about 1995, on Fig. 3: 1024 objects on one machine.
@@ -13,7 +15,7 @@ inline constexpr double kTestsFall = 5;                                     // t
 // Havran & Sixta 1999: a uniform grid with 3D-DDA on SPD's scenes, tests and steps a ray.
 struct UniformGrid {
     const char* scene;
-    std::uint32_t divisions[3];
+    Divisions divisions;
     double tests, steps;
 };
 inline constexpr UniformGrid kHavran[] = {{"balls", {46, 46, 3}, 358.66, 5.69},

@@ -5,9 +5,10 @@
 #include "host/machine/budget.hpp"
 #include "host/machine/machine.hpp"
 #include "host/machine/t805.hpp"
-#include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/packer.hpp"
+#include "host/study/arrays.hpp"
+#include "host/torus/topology.hpp"
 
 namespace raya {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kEnoughS = 1;  // of timing one grid
 RingSettings ring_settings(const Divisions& divisions, const GridSettings& settings) {
     RingSettings ring;
     ring.machine = machine_named("grande");
-    ring.mapping = make_mapping("cyclic", settings.side, settings.side, 1, 0, "cyclic");
+    ring.mapping = cyclic(settings.side, settings.side, 1, 0);
     ring.bounces = settings.bounces;
     ring.sampling = settings.sampling;
     ring.accel = {.grid = true, .divisions = divisions};
@@ -47,9 +48,7 @@ GridRun run_grid(Session& session, const LabelledScene& scene, const Divisions& 
     return run;
 }
 
-std::uint64_t voxels_of(const GridRun& run) {
-    return std::uint64_t{run.divisions[0]} * run.divisions[1] * run.divisions[2];
-}
+std::string GridRun::sides() const { return sides_text(divisions); }
 
 std::uint64_t rays_of(const EventCounts& events) {
     return events[RAYA_PRIMARY] + events[RAYA_REFLECTED] + events[RAYA_REFRACTED] + events[RAYA_SHADOW];

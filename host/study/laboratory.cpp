@@ -1,8 +1,8 @@
 #include "host/study/laboratory.hpp"
 
-#include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/packer.hpp"
+#include "host/study/arrays.hpp"
 
 namespace raya {
 namespace {
@@ -12,7 +12,7 @@ Costs render_costs(Session& session, const LabelledScene& scene, std::uint32_t s
     settings.machine = machine_named("grande");
     settings.format = format_for(scene.scene);
     settings.bounces = machine_named("spa").bounces;
-    settings.mapping = make_mapping("cyclic", size, size, size, 16 % size, "cyclic");
+    settings.mapping = cyclic(size, 16 % size);
     settings.antialias.method = method;
     RingResult result = RingRenderer(session, scene.scene, settings).render();
     Costs costs;
@@ -31,8 +31,7 @@ Costs render_costs(Session& session, const LabelledScene& scene, std::uint32_t s
 
 NumberFormat format_for(const Scene& scene) {
     const Machine& spa = machine_named("spa");
-    const JobSettings smallest{make_mapping("cyclic", 1, 1, 1, 0, "cyclic"), Sampling::kCentres, spa.bounces,
-                               cycles_of_events(), spa.format};
+    const JobSettings smallest{cyclic(1, 0), Sampling::kCentres, spa.bounces, cycles_of_events(), spa.format};
     return 4 * pack_job(scene, smallest).words.size() <= spa.pe_memory_bytes.value() ? spa.format : NumberFormat{};
 }
 

@@ -8,9 +8,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/study/laboratory.hpp"
-#include "host/study/page.hpp"
-
 namespace raya {
 
 /// Square of the length of the shortest vector, pixels; `side` N 1 or more, `offset` below it.
@@ -28,8 +25,5 @@ std::vector<double> ranks_of(const std::vector<double>& values);
 
 /// Spearman's correlation, of the ranks: -1..1, 0 where all values of either are equal.
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
-
-/// `scenes`: square images of one size, 16 pixels a side or more, one at least.
-StudyPage lattice_page(const std::vector<const Costs*>& scenes);
 
 }  // namespace raya

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
+#include "host/study/arrays.hpp"
 #include "tests/reference/reference.hpp"
 
 namespace raya {
@@ -48,7 +48,7 @@ Measured measure_device(Session& session, const LabelledScene& scene, std::uint3
     settings.machine = machine_named("grande");
     settings.format = format;
     settings.bounces = machine_named("spa").bounces;
-    settings.mapping = make_mapping("cyclic", size, size, size, 16 % size, "cyclic");
+    settings.mapping = cyclic(size, 16 % size);
     RingRenderer renderer(session, scene.scene, settings);
     return measure(kDeviceRuns, kEnoughS, [&] { return trace_seconds(renderer.render()); });
 }

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
-#include "host/ring/mapping.hpp"
 #include "host/ring/route.hpp"
 #include "host/ring/schedule.hpp"
+#include "host/study/arrays.hpp"
 #include "host/study/spa_times.hpp"
 
 namespace raya {
@@ -13,14 +14,16 @@ namespace {
 
 constexpr std::uint64_t kPixelWords = 3;
 
-// Load of the busiest PE, for each offset.
-std::vector<double> largest_loads_ms(const CostImage& image, std::uint32_t pes,
-                                     const std::vector<std::uint32_t>& offsets) {
-    const double mean = static_cast<double>(total_cycles(image)) / pes;
-    std::vector<double> loads = imbalance_of_offsets(image, pes, RAYA_FOLD_CYCLIC, offsets);
-    for (double& load : loads) load = spa_ms(mean * (1 + load));
-    return loads;
-}
+// One pass over the image: the imbalance of each offset.
+struct Pass {
+    double mean;  // cycles of a PE
+    std::vector<double> imbalance;
+
+    Pass(const CostImage& image, std::uint32_t pes, const std::vector<std::uint32_t>& offsets)
+        : mean(static_cast<double>(total_cycles(image)) / pes),
+          imbalance(imbalance_of_offsets(image, pes, RAYA_FOLD_CYCLIC, offsets)) {}
+    double largest_ms(std::uint32_t offset) const { return spa_ms(mean * (1 + imbalance[offset])); }
+};
 
 }  // namespace
 
@@ -38,17 +41,18 @@ std::uint64_t neighbour_rotations(const raya_mapping& mapping) {
 
 std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, AntialiasMethod method) {
     const std::uint32_t width = costs.trace.width, height = costs.trace.height;
+    const Machine& spa = machine_named("spa");
     std::vector<std::uint32_t> offsets(width);
     std::iota(offsets.begin(), offsets.end(), 0u);
-    const Machine& spa = machine_named("spa");
-    const std::vector<double> trace = largest_loads_ms(costs.trace, pes, offsets);
-    std::vector<double> supersample(width);
-    if (method == AntialiasMethod::kSupersample) supersample = largest_loads_ms(costs.supersample, pes, offsets);
+    const Pass first(costs.trace, pes, offsets);
+    std::optional<Pass> again;
+    if (method == AntialiasMethod::kSupersample) again.emplace(costs.supersample, pes, offsets);
     std::vector<OffsetTime> times;
     for (const std::uint32_t p : offsets) {
-        const raya_mapping mapping = make_mapping("cyclic", width, height, pes, p, "cyclic");
-        OffsetTime time{.trace_ms = trace[p], .supersample_ms = supersample[p]};
+        OffsetTime time{.offset = p, .imbalance = first.imbalance[p], .trace_ms = first.largest_ms(p)};
+        if (again) time.supersample_ms = again->largest_ms(p);
         if (method != AntialiasMethod::kNone) {
+            const raya_mapping mapping = cyclic(width, height, pes, p);
             const std::uint32_t share = largest_share(mapping);
             const SmoothingCycles cycles = smoothing_cycles(method, share);
             time.smooth_ms = spa_ms(static_cast<double>(cycles.filter + cycles.compare));
@@ -68,13 +72,6 @@ std::uint32_t usual_size(const Scene& scene) {
     std::uint32_t size = square ? static_cast<std::uint32_t>(scene.view.width) : kOther;
     while (size / 2 >= kLeast && std::uint64_t{size} * size * scene.object_count() > kMostTests) size /= 2;
     return size;
-}
-
-std::uint32_t best_offset_of(const std::vector<OffsetTime>& times, std::size_t count) {
-    const auto end = times.begin() + static_cast<std::ptrdiff_t>(std::min(count, times.size()));
-    const auto best = std::min_element(
-        times.begin(), end, [](const OffsetTime& a, const OffsetTime& b) { return a.total_ms() < b.total_ms(); });
-    return static_cast<std::uint32_t>(best - times.begin());
 }
 
 }  // namespace raya

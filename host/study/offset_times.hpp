@@ -12,6 +12,8 @@ namespace raya {
 /// Modelled milliseconds of one offset, no factor. Broadcast and gather are not in it: they take the same for every
 /// offset.
 struct OffsetTime {
+    std::uint32_t offset = 0;
+    double imbalance = 0;       // u of the first pass
     double trace_ms = 0;        // of the busiest PE in the first pass
     double smooth_ms = 0;       // means or comparisons
     double supersample_ms = 0;  // of the busiest PE in supersampling
@@ -28,9 +30,6 @@ std::uint64_t neighbour_rotations(const raya_mapping& mapping);
 /// Of the offsets 0..W-1, cyclic fold. `costs.supersample` may be empty where the method is another. The PEs have room
 /// for the shares that go round. Takes O(W pixels).
 std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, AntialiasMethod method);
-
-/// The offset of the smallest total among the first `count`; of equal ones the smallest.
-std::uint32_t best_offset_of(const std::vector<OffsetTime>& times, std::size_t count);
 
 /// Pixels a side of the image in which a scene's offsets are compared, unless asked for: the scene's own size where it
 /// is square, else 256, halved while the scene's objects would make it take minutes.

@@ -1,5 +1,6 @@
 // What a study has found, as plain data: from this its files, its page and its plots are made.
 #pragma once
+#include <concepts>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,14 +10,34 @@
 
 namespace raya {
 
-using Cell = std::variant<std::string, std::int64_t, double>;
+/// A word, a count or a figure.
+struct Cell : std::variant<std::string, std::int64_t, double> {
+    Cell(std::string text) : variant(std::move(text)) {}
+    Cell(const char* text) : variant(std::string(text)) {}
+    Cell(std::integral auto count) : variant(static_cast<std::int64_t>(count)) {}
+    Cell(double value) : variant(value) {}
+
+    /// Of a count or a figure; std::bad_variant_access for a word.
+    double number() const;
+    const std::string& text() const { return std::get<std::string>(*this); }
+};
+
+/// What stands above a column, and on a plot's axis: "load (cycles)".
+struct Heading {
+    std::string label;      // by which tests and programs ask for the column
+    std::string unit = {};  // empty for plain numbers and words
+    std::string text() const { return unit.empty() ? label : label + " (" + unit + ")"; }
+};
 
 struct StudyTable {
     std::string name;  // stem of its file: "fig8" or "fig8-scenes"
     std::string title;
-    std::vector<std::string> columns;     // with units: "u", "load (cycles)"
-    std::vector<std::vector<Cell>> rows;  // a cell for each column
-    bool on_page = true;                  // false: CSV and JSON only, for long ones
+    std::vector<Heading> columns;
+    std::vector<std::vector<Cell>> rows = {};  // a cell for each column
+    bool on_page = true;                       // false: CSV and JSON only, for long ones
+
+    /// The cell of row `row` under a label. std::out_of_range for a row or a label that there is not.
+    const Cell& at(std::size_t row, const std::string& label) const;
 };
 
 enum class PlotStyle {
@@ -32,12 +53,14 @@ struct PlotSeries {
     PlotStyle style = PlotStyle::kLine;
 };
 
+enum class Axes { kLinear, kLogX, kLogY, kLogBoth };
+
 struct StudyPlot {
     std::string name;  // stem of its files
     std::string title;
     std::string x_label, y_label;  // with units
-    bool log_x = false, log_y = false;
-    std::vector<PlotSeries> series{};
+    Axes axes = Axes::kLinear;
+    std::vector<PlotSeries> series = {};
 };
 
 /// One figure that the paper printed, or might have, beside ours. The ratio ours / paper is made when it is written.
@@ -46,19 +69,27 @@ struct Comparison {
     std::string unit;             // empty for a plain number
     std::optional<double> paper;  // empty where the paper has none
     double ours = 0;
-    std::string remark;
+    std::string remark = {};
 };
 
 struct StudyPage {
     std::string name;  // stem of its files: "fig8"
     std::string title;
-    std::string question;             // what the reader wants to know, a sentence
-    std::vector<std::string> method;  // how it was done, a sentence or two each
-    std::vector<Comparison> comparisons;
-    std::vector<StudyTable> tables;
-    std::vector<StudyPlot> plots;
-    std::vector<std::string> findings;  // a sentence each, the chief one first
-    nlohmann::ordered_json settings;
+    std::string question;                  // what the reader wants to know, a sentence
+    std::vector<std::string> method = {};  // how it was done, a sentence or two each
+    nlohmann::ordered_json settings = {};
+    std::vector<Comparison> comparisons = {};
+    std::vector<std::string> findings = {};  // a sentence each, the chief one first
+    std::vector<StudyTable> tables = {};
+    std::vector<StudyPlot> plots = {};
+
+    /// By its name, by what is compared. std::out_of_range where there is none.
+    const StudyTable& table(const std::string& name) const;
+    const Comparison& comparison(const std::string& what) const;
+    /// The figure of a table's row under a label.
+    double value(const std::string& table_name, std::size_t row, const std::string& label) const {
+        return table(table_name).at(row, label).number();
+    }
 };
 
 }  // namespace raya

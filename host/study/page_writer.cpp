@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "host/report/whole_file.hpp"
+#include "host/study/rows.hpp"
 #include "host/study/text_tables.hpp"
 
 namespace raya {
@@ -14,6 +15,10 @@ namespace {
 
 using nlohmann::ordered_json;
 using Cells = std::vector<std::vector<std::string>>;
+
+std::string exact(const Cell& cell) {
+    return std::visit([](const auto& value) { return fmt::format("{}", value); }, cell);
+}
 
 // Five digits, and never an exponent where all digits fit: a reader compares figures by their lengths.
 std::string shown(double value) {
@@ -24,18 +29,7 @@ std::string shown(double value) {
 
 std::string shown(const Cell& cell) {
     if (const auto* value = std::get_if<double>(&cell)) return shown(*value);
-    if (const auto* count = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *count);
-    return std::get<std::string>(cell);
-}
-
-std::string exact(const Cell& cell) {
-    return std::visit([](const auto& value) { return fmt::format("{}", value); }, cell);
-}
-
-ordered_json json_cell(const Cell& cell) {
-    if (const auto* value = std::get_if<double>(&cell)) return json_number(*value);
-    if (const auto* count = std::get_if<std::int64_t>(&cell)) return *count;
-    return std::get<std::string>(cell);
+    return exact(cell);
 }
 
 // Empty where the paper has no number, or none to divide by.
@@ -46,24 +40,11 @@ std::optional<double> ratio_of(const Comparison& c) {
 
 ordered_json optional_json(const std::optional<double>& value) { return value ? json_number(*value) : nullptr; }
 
-ordered_json json_numbers(const std::vector<double>& values) {
-    auto numbers = ordered_json::array();
-    for (double value : values) numbers.push_back(json_number(value));
-    return numbers;
-}
-
-const char* style_name(PlotStyle style) {
-    switch (style) {
-        case PlotStyle::kLine:
-            return "line";
-        case PlotStyle::kPoints:
-            return "points";
-        case PlotStyle::kSteps:
-            return "steps";
-        case PlotStyle::kPaper:
-            return "paper";
-    }
-    throw std::invalid_argument("no such plot style");
+template <typename T, typename F>
+ordered_json json_list(const std::vector<T>& items, F json_of) {
+    auto list = ordered_json::array();
+    for (const T& item : items) list.push_back(json_of(item));
+    return list;
 }
 
 ordered_json comparison_json(const Comparison& c) {
@@ -76,29 +57,28 @@ ordered_json comparison_json(const Comparison& c) {
 }
 
 ordered_json table_json(const StudyTable& table) {
-    auto rows = ordered_json::array();
-    for (const auto& row : table.rows) {
-        auto cells = ordered_json::array();
-        for (const Cell& cell : row) cells.push_back(json_cell(cell));
-        rows.push_back(std::move(cells));
-    }
-    return {{"name", table.name}, {"title", table.title}, {"columns", table.columns}, {"rows", std::move(rows)}};
+    return {{"name", table.name},
+            {"title", table.title},
+            {"columns", json_list(table.columns, [](const Heading& heading) { return heading.text(); })},
+            {"rows", json_list(table.rows, [](const auto& row) { return json_list(row, cell_json); })}};
+}
+
+ordered_json series_json(const PlotSeries& s) {
+    constexpr const char* kStyles[] = {"line", "points", "steps", "paper"};
+    return {{"label", s.label},
+            {"style", kStyles[static_cast<int>(s.style)]},
+            {"x", json_list(s.x, json_number)},
+            {"y", json_list(s.y, json_number)}};
 }
 
 ordered_json plot_json(const StudyPlot& plot) {
-    auto series = ordered_json::array();
-    for (const PlotSeries& s : plot.series)
-        series.push_back(
-            {{"label", s.label}, {"style", style_name(s.style)}, {"x", json_numbers(s.x)}, {"y", json_numbers(s.y)}});
-    return {{"name", plot.name},   {"title", plot.title}, {"x_label", plot.x_label},    {"y_label", plot.y_label},
-            {"log_x", plot.log_x}, {"log_y", plot.log_y}, {"series", std::move(series)}};
-}
-
-template <typename T, typename F>
-ordered_json json_list(const std::vector<T>& items, F json_of) {
-    auto list = ordered_json::array();
-    for (const T& item : items) list.push_back(json_of(item));
-    return list;
+    return {{"name", plot.name},
+            {"title", plot.title},
+            {"x_label", plot.x_label},
+            {"y_label", plot.y_label},
+            {"log_x", plot.axes == Axes::kLogX || plot.axes == Axes::kLogBoth},
+            {"log_y", plot.axes == Axes::kLogY || plot.axes == Axes::kLogBoth},
+            {"series", json_list(plot.series, series_json)}};
 }
 
 std::string with_unit(const std::string& number, const std::string& unit) {
@@ -116,9 +96,7 @@ std::string comparison_table(const std::vector<Comparison>& comparisons) {
 }
 
 std::string list(const std::vector<std::string>& sentences) {
-    std::string text;
-    for (const std::string& sentence : sentences) text += "- " + sentence + '\n';
-    return text;
+    return joined(sentences, "", [](const std::string& sentence) { return "- " + sentence + '\n'; });
 }
 
 // Nothing for an empty text.
@@ -129,11 +107,8 @@ std::string section(const std::string& title, const std::string& text) {
 std::string table_section(const StudyTable& table) {
     const std::string file = fmt::format("[{0}.csv]({0}.csv)", table.name);
     if (!table.on_page) return section(table.title, fmt::format("{} rows, in {}.\n", table.rows.size(), file));
-    Cells cells = {table.columns};
-    for (const auto& row : table.rows) {
-        cells.emplace_back();
-        for (const Cell& cell : row) cells.back().push_back(shown(cell));
-    }
+    Cells cells = {each(table.columns, &Heading::text)};
+    for (const auto& row : table.rows) cells.push_back(each(row, [](const Cell& cell) { return shown(cell); }));
     return section(table.title, fmt::format("{}\nWith all digits: {}.\n", markdown_table(cells), file));
 }
 
@@ -141,10 +116,8 @@ std::string plots_text(const StudyPage& page, const PlotOutcome& plots) {
     if (page.plots.empty()) return {};
     if (!plots.drawn)
         return fmt::format("Not drawn: {}. Then `tools/plot.py {}.json` draws them.\n", plots.reason, page.name);
-    std::string text;
-    for (const StudyPlot& plot : page.plots)
-        text += fmt::format("{0}![{1}]({2}.svg)\n", text.empty() ? "" : "\n", plot.title, plot.name);
-    return text;
+    return joined(page.plots, "\n",
+                  [](const StudyPlot& plot) { return fmt::format("![{}]({}.svg)\n", plot.title, plot.name); });
 }
 
 void check_names(const StudyPage& page) {
@@ -169,14 +142,16 @@ std::vector<std::string> page_files(const StudyPage& page) {
 }
 
 std::string table_csv(const StudyTable& table) {
-    std::string text;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) text += (i > 0 ? "," : "") + csv_field(table.columns[i]);
-    text += '\n';
-    for (const auto& row : table.rows) {
-        for (std::size_t i = 0; i < row.size(); ++i) text += (i > 0 ? "," : "") + csv_field(exact(row[i]));
-        text += '\n';
-    }
+    std::string text = joined(table.columns, ",", [](const Heading& h) { return csv_field(h.text()); }) + '\n';
+    for (const auto& row : table.rows)
+        text += joined(row, ",", [](const Cell& cell) { return csv_field(exact(cell)); }) + '\n';
     return text;
+}
+
+ordered_json cell_json(const Cell& cell) {
+    if (const auto* value = std::get_if<double>(&cell)) return json_number(*value);
+    if (const auto* count = std::get_if<std::int64_t>(&cell)) return *count;
+    return cell.text();
 }
 
 ordered_json page_json(const StudyPage& page) {

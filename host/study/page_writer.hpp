@@ -17,7 +17,10 @@ std::vector<std::string> page_files(const StudyPage& page);
 /// One line for each row under the columns' names; numbers with all their digits, fields quoted as RFC 4180 says.
 std::string table_csv(const StudyTable& table);
 
-/// Everything on the page, the points of its plots too. JSON has no infinity: the string "inf" stands for it.
+/// JSON has no infinity: the string "inf" stands for it.
+nlohmann::ordered_json cell_json(const Cell& cell);
+
+/// Everything on the page, the points of its plots too.
 nlohmann::ordered_json page_json(const StudyPage& page);
 
 /// Question, method, the paper's figures beside ours, findings, tables and plots. Numbers have five digits, as a reader

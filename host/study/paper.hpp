@@ -1,5 +1,7 @@
 // What Kohata & Ito (1993) printed, each figure with its place; marked [D] where it is arithmetic on printed figures.
 #pragma once
+#include <cstdint>
+#include <optional>
 
 namespace raya::paper {
 
@@ -12,6 +14,7 @@ inline constexpr double kPcMs = 295'910, kWorkstationMs = 28'800;  // computing 
 
 // Table 3: ray tracing and filtering, p = 0 and p = 16.
 inline constexpr double kTrace0Ms = 653, kTrace16Ms = 283, kFilter0Ms = 9, kFilter16Ms = 19;
+inline constexpr double kFiltered0Ms = kTrace0Ms + kFilter0Ms, kFiltered16Ms = kTrace16Ms + kFilter16Ms;
 
 // Table 4: supersampling, communication and computation, p = 0 and p = 16.
 inline constexpr double kExchange0Ms = 2, kExchange16Ms = 12, kSupersample0Ms = 739, kSupersample16Ms = 407;
@@ -33,3 +36,14 @@ inline constexpr double kPixelMachineSpeedup = 60;                // beside Fig.
 inline constexpr double kRotationMs = 0.3125;                     // [D] Tables 3 and 4: 10 ms for 32 rotations
 
 }  // namespace raya::paper
+
+namespace raya {
+
+inline bool at_papers_size(std::uint32_t size) { return size == static_cast<std::uint32_t>(paper::kSize); }
+
+/// What the paper printed, where the study is made at the paper's size: at another it would stand beside nothing.
+inline std::optional<double> printed(std::optional<double> value, std::uint32_t size) {
+    return at_papers_size(size) ? value : std::nullopt;
+}
+
+}  // namespace raya

@@ -13,14 +13,16 @@ LabelledScene embedded_scene(const std::string& name) {
     return {name, parse_nff(embedded_files().at(file), file)};
 }
 
-std::vector<LabelledScene> embedded_study_scenes() {
-    std::vector<LabelledScene> scenes;
+LabelledScene one_of(const Scenes& named) { return named.empty() ? embedded_scene("centre") : named.front(); }
+
+Scenes embedded_study_scenes() {
+    Scenes scenes;
     for (const char* name : {"centre", "spheres", "glass", "polygons", "cones"}) scenes.push_back(embedded_scene(name));
     return scenes;
 }
 
-std::vector<LabelledScene> paper_like_scenes() {
-    std::vector<LabelledScene> scenes;
+Scenes paper_like_scenes() {
+    Scenes scenes;
     for (const char* name : {"centre", "spheres", "mirrors", "glass", "planes"}) scenes.push_back(embedded_scene(name));
     for (const int spheres : {6, 12, 20, 30})
         scenes.push_back(

@@ -12,15 +12,19 @@ struct LabelledScene {
     std::string label;
     Scene scene;
 };
+using Scenes = std::vector<LabelledScene>;
 
 /// A scene that the program carries within itself, by its name in scenes/, without .nff.
 LabelledScene embedded_scene(const std::string& name);
 
+/// For studies of one scene: the first of those that were named, else centre, the paper's kind.
+LabelledScene one_of(const Scenes& named);
+
 /// centre, spheres, glass, polygons, cones.
-std::vector<LabelledScene> embedded_study_scenes();
+Scenes embedded_study_scenes();
 
 /// Ten scenes of 6 to 30 spheres and planes, as in the paper's experiments: the project's own of that size, and
 /// generated ones.
-std::vector<LabelledScene> paper_like_scenes();
+Scenes paper_like_scenes();
 
 }  // namespace raya

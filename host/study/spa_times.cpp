@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "host/error.hpp"
-#include "host/ring/mapping.hpp"
 #include "host/ring/schedule.hpp"
+#include "host/study/arrays.hpp"
 #include "host/study/paper.hpp"
 
 namespace raya {
@@ -32,7 +32,7 @@ SpaRun run_on_spa(Session& session, const LabelledScene& scene, std::uint32_t si
     settings.machine = machine_named("spa");
     settings.format = format_for(scene.scene);
     settings.bounces = settings.machine.bounces;
-    settings.mapping = make_mapping("cyclic", size, size, pes, offset, "cyclic");
+    settings.mapping = cyclic(size, size, pes, offset);
     settings.antialias.method = method;
     try {
         return run_of(settings, RingRenderer(session, scene.scene, settings).render());
@@ -50,10 +50,6 @@ double fitted_factor(const CostImage& trace) {
     constexpr double kPaperPixelMs = paper::kOnePeComputeMs / (paper::kSize * paper::kSize);
     const auto pixels = static_cast<double>(trace.cycles.size());
     return kPaperPixelMs * pixels / spa_ms(static_cast<double>(total_cycles(trace)));
-}
-
-std::optional<double> printed(double value, std::uint32_t size) {
-    return size == static_cast<std::uint32_t>(paper::kSize) ? std::optional<double>(value) : std::nullopt;
 }
 
 std::string offset_name(std::uint32_t offset) { return fmt::format("p = {}", offset); }

@@ -32,9 +32,6 @@ ModelledTime spa_time(const SpaRun& run, double factor = 1);
 /// model gives for a pixel of this first pass. At the paper's size that is 64,800 ms over one PE's modelled time.
 double fitted_factor(const CostImage& trace);
 
-/// What the paper printed, where the study is made at the paper's size: at another it would stand beside nothing.
-std::optional<double> printed(double value, std::uint32_t size);
-
 /// "p = 16"
 std::string offset_name(std::uint32_t offset);
 

@@ -5,15 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "host/ring/mapping.hpp"
 #include "host/study/arrays.hpp"
 
 namespace raya {
 namespace {
-
-Strategy fixed(const std::string& name, const std::string& mapping) {
-    return {name, StrategyKind::kStatic, mapping, {}};
-}
 
 bool owns_single_columns(const raya_mapping& mapping) {
     std::vector<std::uint32_t> column_of(mapping.pes, mapping.width);  // mapping.width: none yet
@@ -27,7 +22,7 @@ bool owns_single_columns(const raya_mapping& mapping) {
 }
 
 // The dynamic one or the hybrid, with free requests and with such of `overhead` cycles.
-void add_asking(std::vector<Strategy>& all, const std::string& start, std::uint32_t chunk, double share,
+void add_asking(std::vector<Strategy>& all, const raya_mapping& start, std::uint32_t chunk, double share,
                 std::uint64_t overhead) {
     const std::string name =
         share > 0 ? fmt::format("hybrid:{}, share {}", chunk, share) : fmt::format("dynamic:{}", chunk);
@@ -41,30 +36,34 @@ void add_asking(std::vector<Strategy>& all, const std::string& start, std::uint3
 std::vector<Strategy> strategies(std::uint32_t size, std::uint32_t pes, std::uint64_t overhead) {
     constexpr std::uint32_t kOffset = 16, kTile = 8;
     const std::uint32_t tile = std::gcd(size, kTile);
-    std::vector<Strategy> all = {
-        fixed("column split", "column"),
-        fixed("cyclic, p = 16", fmt::format("cyclic:{}", kOffset % size)),
-        fixed("cyclic, p = sqrt(P)", fmt::format("cyclic:{}", root_offset(pes) % size)),
-        fixed("blocks of scan lines", "blocks"),
-        fixed("tiles 8 x 8", fmt::format("tiles:{}x{}", tile, tile)),
-        fixed("grid", squarest_grid(pes)),
-        fixed("random", "random:1"),
+    const auto other = [&](const std::string& text) { return make_mapping(text, size, size, pes, 0, "cyclic"); };
+    const raya_mapping columns = cyclic(size, size, pes, 0), grid = squarest_grid(size, size, pes);
+    std::vector<Strategy> all;
+    const auto add = [&](const char* name, const raya_mapping& mapping) {
+        all.push_back({name, StrategyKind::kStatic, mapping, {}});
     };
-    for (const std::uint32_t chunk : {1u, 16u, 64u}) add_asking(all, "column", chunk, 0, overhead);
-    add_asking(all, squarest_grid(pes), 16, 0.5, overhead);
-    add_asking(all, squarest_grid(pes), 16, 0.9, overhead);
-    add_asking(all, squarest_grid(pes), 1, 0.9, overhead);
+    add("column split", columns);
+    add("cyclic, p = 16", cyclic(size, size, pes, kOffset % size));
+    add("cyclic, p = sqrt(P)", cyclic(size, size, pes, root_offset(pes) % size));
+    add("blocks of scan lines", other("blocks"));
+    add("tiles 8 x 8", other(fmt::format("tiles:{0}x{0}", tile)));
+    add("grid", grid);
+    add("random", random_pixels(size, size, pes));
+    for (const std::uint32_t chunk : {1u, 16u, 64u}) add_asking(all, columns, chunk, 0, overhead);
+    add_asking(all, grid, 16, 0.5, overhead);
+    add_asking(all, grid, 16, 0.9, overhead);
+    add_asking(all, grid, 1, 0.9, overhead);
     return all;
 }
 
-Outcome run_strategy(const CostImage& image, std::uint32_t pes, const Strategy& strategy) {
-    const raya_mapping mapping = make_mapping(strategy.mapping, image.width, image.height, pes, 0, "cyclic");
+Outcome run_strategy(const CostImage& image, const Strategy& strategy) {
+    const std::uint32_t pes = strategy.mapping.pes;
     Outcome outcome;
     if (strategy.kind == StrategyKind::kStatic) {
-        outcome.makespan = static_load(image, mapping).max;
-        outcome.single_columns = owns_single_columns(mapping);
+        outcome.makespan = static_load(image, strategy.mapping).max;
+        outcome.single_columns = owns_single_columns(strategy.mapping);
     } else {
-        const Schedule schedule = dynamic_schedule(image, mapping, strategy.plan);
+        const Schedule schedule = dynamic_schedule(image, strategy.mapping, strategy.plan);
         outcome.makespan = makespan(schedule);
         outcome.requests = schedule.requests;
     }

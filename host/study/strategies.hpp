@@ -14,8 +14,10 @@ enum class StrategyKind { kStatic, kDynamic, kHybrid };
 struct Strategy {
     std::string name;  // "cyclic, p = sqrt(P)"
     StrategyKind kind = StrategyKind::kStatic;
-    std::string mapping;  // as make_mapping() takes it; of a hybrid: what it starts with
-    DynamicPlan plan;     // of a dynamic one or a hybrid
+    raya_mapping mapping = {};  // of the whole image; of a hybrid: what it starts with
+    DynamicPlan plan;           // of a dynamic one or a hybrid
+
+    bool pays() const { return plan.overhead > 0; }  // for its requests
 };
 
 /// Column split, cyclic p = 16 and p = sqrt(P), blocks of scan lines, tiles of 8 x 8, the grid nearest to a square,
@@ -32,7 +34,8 @@ struct Outcome {
     std::uint64_t requests = 0;
     bool single_columns = false;  // of a static one: each PE's pixels lie in one column
 };
-Outcome run_strategy(const CostImage& image, std::uint32_t pes, const Strategy& strategy);
+/// `image`: of the size that the strategy was made for.
+Outcome run_strategy(const CostImage& image, const Strategy& strategy);
 
 /// Cycles of a PE from a request until its answer is there: a word (its number) to the root and two (first pixel, how
 /// many) back at the links' rate, each way with the synchronisation of a rotation. [?] The SPA never did this; what its

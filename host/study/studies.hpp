@@ -1,49 +1,93 @@
-// The studies of the load laboratory: one function each, and the list from which `raya study` makes its commands.
+// The studies of the load laboratory: the list from which `raya study` makes its commands, and each as a function of
+// what was counted.
+//
+// A study is a struct for its rows, a function that computes them, columns that say what a row's figures are called
+// (rows.hpp), plots and comparisons that name the same figures, and findings: sentences, each a function of the rows.
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "host/study/grid_run.hpp"
 #include "host/study/laboratory.hpp"
 #include "host/study/page.hpp"
 
 namespace raya {
 
-/// A study by name. `scenes` are those that the user named; empty: the study's own.
+/// `scenes` are those that the user named; empty: the study's own.
+using StudyFunction = StudyPage(Laboratory& laboratory, const Scenes& scenes);
+
 struct Study {
     std::string name, summary;
     bool one_scene;  // takes the first of several
-    StudyPage (*run)(Laboratory& laboratory, const std::vector<LabelledScene>& scenes);
+    StudyFunction* run;
 };
 
 /// In the order in which they tell the story.
 std::span<const Study> studies();
 
 // Kohata & Ito 1993, figure by figure and table by table.
-StudyPage study_fig7(Laboratory&, const std::vector<LabelledScene>&);    // load of each PE, p = 0 and 16
-StudyPage study_fig8(Laboratory&, const std::vector<LabelledScene>&);    // u against p
-StudyPage study_fig9(Laboratory&, const std::vector<LabelledScene>&);    // speed-up against P
-StudyPage study_table2(Laboratory&, const std::vector<LabelledScene>&);  // times, and this machine's beside them
-StudyPage study_table3(Laboratory&, const std::vector<LabelledScene>&);  // the filter
-StudyPage study_table4(Laboratory&, const std::vector<LabelledScene>&);  // supersampling
-StudyPage study_fig12(Laboratory&, const std::vector<LabelledScene>&);   // load of each PE in supersampling
-StudyPage study_fig13(Laboratory&, const std::vector<LabelledScene>&);   // u against p in supersampling
-StudyPage study_images(Laboratory&, const std::vector<LabelledScene>&);  // ten scenes, two sizes
+StudyFunction study_fig7, study_fig8, study_fig9, study_table2, study_table3, study_table4, study_fig12, study_fig13,
+    study_images;
+
+/// Fig. 9: speed-up against the number of PEs, 1 to one for each column of a square image of 16 pixels a side or more.
+StudyPage speedup_page(const std::string& scene, const CostImage& image);
+
+/// `images`: one at least, of `pes` columns or more, in the order of the table.
+StudyPage images_page(std::uint32_t pes, const std::vector<const Costs*>& images);
 
 // Beyond the paper.
-StudyPage study_lattice(Laboratory&, const std::vector<LabelledScene>&);            // offsets beyond sqrt(P)
-StudyPage study_scale(Laboratory&, const std::vector<LabelledScene>&);              // P = 2^4..2^20
-StudyPage study_static_vs_dynamic(Laboratory&, const std::vector<LabelledScene>&);  // Heirich & Arvo's claim
-StudyPage study_best_offset(Laboratory&, const std::vector<LabelledScene>&);        // p for the user's scene
+StudyFunction study_lattice, study_scale, study_static_vs_dynamic, study_best_offset;
+
+/// `scenes`: square images of one size, 16 pixels a side or more, one at least.
+StudyPage lattice_page(const std::vector<const Costs*>& scenes);
+
+/// 16, 32, .. PEs, up to one for each pixel of a square image of 16 pixels a side or more.
+StudyPage scale_page(const std::string& scene, const CostImage& image);
+
+/// Whether more PEs than columns take 2-D: `kept` are the numbers of PEs, of `sizes` that there are, on which the
+/// mapping called `best` keeps up with it.
+std::string need_of_2d(const std::string& best, const std::vector<std::uint32_t>& kept, std::size_t sizes);
 
 // Voxels in one machine.
-StudyPage study_divisions(Laboratory&, const std::vector<LabelledScene>&);  // Yoshitani & Yamazaki's Fig. 3
-StudyPage study_havran(Laboratory&, const std::vector<LabelledScene>&);     // tests and steps a ray, Havran & Sixta
+StudyFunction study_divisions, study_havran;
+
+/// 2^k voxels as near to a cube as powers of two allow, the longer sides along x, then y: 32 are 4 x 4 x 2, 1024 are 16
+/// x 8 x 8. k 0..24.
+Divisions divisions_of_power(std::uint32_t k);
+
+/// `all`: of each scene the divisions in ascending order, two at least. `from_paper`: the scenes are of the paper's
+/// kind, with as many objects as the paper has, so that its figures stand beside ours; the last has 1024.
+/// std::logic_error where 32 or 1024 divisions are missing then.
+StudyPage divisions_page(std::uint32_t side, const std::vector<std::vector<GridRun>>& all, bool from_paper);
+
+/// `runs`: one at least, those of one scene after one another, rendered with SPD's settings but `side`. Published
+/// figures stand beside those whose label and divisions are in paper::kHavran.
+StudyPage havran_page(std::uint32_t side, const std::vector<GridRun>& runs);
 
 // The torus machine: Yoshitani & Yamazaki, and beyond.
-StudyPage study_objects(Laboratory&, const std::vector<LabelledScene>&);  // Fig. 4: time against objects
-StudyPage study_nodes(Laboratory&, const std::vector<LabelledScene>&);    // 1..4096 nodes
-StudyPage study_inject(Laboratory&, const std::vector<LabelledScene>&);   // the root makes all primary rays, or all do
-StudyPage study_hybrid(Laboratory&, const std::vector<LabelledScene>&);   // groups share the screen
+StudyFunction study_objects, study_nodes, study_inject, study_hybrid;
+
+/// For numbers of objects, ascending, and so many random scenes of each.
+StudyPage objects_page(Session& session, const std::vector<int>& counts, std::uint32_t size, int seeds);
+
+struct NodesSettings {
+    std::uint32_t size = 64;    // pixels a side
+    std::uint32_t most = 4096;  // nodes, a power of two
+    std::uint32_t sides = 16;   // voxels along each axis, where all machines have the same ones
+    /// A series ends before a machine of which this many launches of a node are to be feared: supersteps x nodes.
+    std::uint64_t most_launches = std::uint64_t{1} << 22;
+};
+
+/// `scenes`: one at least.
+StudyPage nodes_page(Session& session, const Scenes& scenes, const NodesSettings& settings);
+
+/// On 1, 2, 4, ... `most` nodes, a power of two.
+StudyPage inject_page(Session& session, const LabelledScene& scene, std::uint32_t size, std::uint32_t most);
+
+/// `nodes`: a power of two, of the whole machine; in 1, 2, 4, ... groups, up to one for each node. `scenes`: one at
+/// least.
+StudyPage hybrid_page(Session& session, const Scenes& scenes, std::uint32_t size, std::uint32_t nodes);
 
 }  // namespace raya

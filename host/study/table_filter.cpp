@@ -1,16 +1,20 @@
 // Table 3: what the 3 x 3 filter costs over the ring, p = 0, 8 and 16.
-#include <fmt/format.h>
+#include <cmath>
+#include <span>
 
-#include <algorithm>
-
-#include "host/study/laboratory.hpp"
 #include "host/study/offset_times.hpp"
 #include "host/study/paper.hpp"
+#include "host/study/prose.hpp"
+#include "host/study/rows.hpp"
 #include "host/study/spa_times.hpp"
 #include "host/study/studies.hpp"
 
 namespace raya {
 namespace {
+
+double tracing_ms(const ModelledTime& t) { return t.compute_ms - t.filter_ms; }
+double filtering_ms(const ModelledTime& t) { return t.filter_ms + t.communication_ms; }
+double total_ms(const ModelledTime& t) { return t.compute_ms + t.communication_ms; }
 
 struct FilterRow {
     std::uint32_t offset = 0;
@@ -18,19 +22,17 @@ struct FilterRow {
     ModelledTime plain, fitted;
 };
 
-double tracing_ms(const ModelledTime& t) { return t.compute_ms - t.filter_ms; }
-double filtering_ms(const ModelledTime& t) { return t.filter_ms + t.communication_ms; }
-double total_ms(const ModelledTime& t) { return t.compute_ms + t.communication_ms; }
-
 struct FilterStudy {
     std::uint32_t size = 0;
     double factor = 1;
-    std::vector<FilterRow> rows;    // p = 0, 8, 16, each rendered
-    std::vector<OffsetTime> times;  // every p, from the cost image
+    std::vector<FilterRow> rows = {};    // p = 0, 8, 16, each rendered
+    std::vector<OffsetTime> times = {};  // every p, from the cost image
+
+    std::span<const OffsetTime> near() const { return std::span(times).first(std::min<std::size_t>(17, size)); }
 };
 
 FilterStudy study_filter(Laboratory& lab, const LabelledScene& scene, std::uint32_t size) {
-    FilterStudy study{.size = size, .rows = {}, .times = {}};
+    FilterStudy study{.size = size};
     Costs costs;
     for (const std::uint32_t p : {0u, 8u, 16u}) {
         const SpaRun run = run_on_spa(lab.session(), scene, size, size, p % size, AntialiasMethod::kFilter);
@@ -42,158 +44,127 @@ FilterStudy study_filter(Laboratory& lab, const LabelledScene& scene, std::uint3
     return study;
 }
 
-struct Printed {
-    std::optional<double> tracing, filtering, total;
-    std::string remark;
+// A figure that Table 3 has, and what it has for p = 0, 8 and 16.
+struct Figure {
+    const char* what;
+    double (*ours)(const ModelledTime&);
+    std::optional<double> paper[3];
 };
+const Figure kFigures[] = {{"ray tracing", tracing_ms, {paper::kTrace0Ms, std::nullopt, paper::kTrace16Ms}},
+                           {"filtering", filtering_ms, {paper::kFilter0Ms, paper::kFilter8Ms, paper::kFilter16Ms}},
+                           {"total", total_ms, {paper::kFiltered0Ms, std::nullopt, paper::kFiltered16Ms}}};
 
 std::vector<Comparison> comparisons_of(const FilterStudy& study) {
-    const auto paper = [&](double value) { return printed(value, study.size); };
-    const std::vector<Printed> all = {
-        {paper(paper::kTrace0Ms), paper(paper::kFilter0Ms), paper(paper::kTrace0Ms + paper::kFilter0Ms), ""},
-        {{}, paper(paper::kFilter8Ms), {}, "[D] predicted from Table 3, not printed"},
-        {paper(paper::kTrace16Ms), paper(paper::kFilter16Ms), paper(paper::kTrace16Ms + paper::kFilter16Ms), ""}};
-    std::vector<Comparison> comparisons;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const FilterRow& row = study.rows[i];
-        const std::string name = offset_name(row.offset) + ": ", fitted = ", fitted";
-        const auto add = [&](const std::string& what, std::optional<double> value, double ours,
-                             const std::string& remark) {
-            comparisons.push_back({name + what, "ms", value, ours, remark});
-        };
-        add("ray tracing", all[i].tracing, tracing_ms(row.plain), "");
-        add("ray tracing" + fitted, all[i].tracing, tracing_ms(row.fitted), "");
-        add("filtering", all[i].filtering, filtering_ms(row.plain), all[i].remark);
-        add("filtering" + fitted, all[i].filtering, filtering_ms(row.fitted), all[i].remark);
-        add("total", all[i].total, total_ms(row.plain), "");
-        add("total" + fitted, all[i].total, total_ms(row.fitted), "");
-    }
-    comparisons.push_back({"filter's arithmetic", "ms", paper(paper::kFilterArithmeticMs),
-                           study.rows.front().plain.filter_ms, "[D]; nothing fitted"});
-    comparisons.push_back({"filter's arithmetic, fitted", "ms", paper(paper::kFilterArithmeticMs),
-                           study.rows.front().fitted.filter_ms, "[D]"});
-    comparisons.push_back({"factor", "", {}, study.factor, "Table 2's"});
-    return comparisons;
+    std::vector<Comparison> all;
+    for (std::size_t i = 0; i < study.rows.size(); ++i)
+        for (const Figure& figure : kFigures)
+            for (const bool fitted : {false, true}) {
+                const FilterRow& row = study.rows[i];
+                all.push_back({offset_name(row.offset) + ": " + figure.what + (fitted ? ", fitted" : ""), "ms",
+                               printed(figure.paper[i], study.size), figure.ours(fitted ? row.fitted : row.plain),
+                               i == 1 && figure.paper[i] ? "[D] predicted from Table 3, not printed" : ""});
+            }
+    const std::optional<double> arithmetic = printed(paper::kFilterArithmeticMs, study.size);
+    const FilterRow& first = study.rows.front();
+    all.push_back({"filter's arithmetic", "ms", arithmetic, first.plain.filter_ms, "[D]; nothing fitted"});
+    all.push_back({"filter's arithmetic, fitted", "ms", arithmetic, first.fitted.filter_ms, "[D]"});
+    all.push_back({"factor", "", std::nullopt, study.factor, "Table 2's"});
+    return all;
 }
 
-StudyTable filter_table(const FilterStudy& study) {
-    StudyTable table{"table3",
-                     "Ray tracing and filter, modelled",
-                     {"p", "rotations", "communication (ms)", "filter (ms)", "filter, fitted (ms)", "ray tracing (ms)",
-                      "ray tracing, fitted (ms)", "total (ms)", "total, fitted (ms)"},
-                     {},
-                     true};
-    for (const FilterRow& row : study.rows)
-        table.rows.push_back({std::int64_t{row.offset}, static_cast<std::int64_t>(row.rotations),
-                              row.plain.communication_ms, row.plain.filter_ms, row.fitted.filter_ms,
-                              tracing_ms(row.plain), tracing_ms(row.fitted), total_ms(row.plain),
-                              total_ms(row.fitted)});
-    return table;
-}
-
-StudyTable offsets_table(const FilterStudy& study) {
-    StudyTable table{"table3-offsets",
-                     "Every offset, nothing fitted",
-                     {"p", "rotations", "communication (ms)", "filter (ms)", "ray tracing (ms)", "total (ms)"},
-                     {},
-                     false};
-    for (std::size_t p = 0; p < study.times.size(); ++p) {
-        const OffsetTime& t = study.times[p];
-        table.rows.push_back({static_cast<std::int64_t>(p), static_cast<std::int64_t>(t.rotations), t.ring_ms,
-                              t.smooth_ms, t.trace_ms, t.total_ms()});
-    }
-    return table;
-}
-
-PlotSeries offsets_series(const FilterStudy& study, const std::string& label, double factor, bool with_tracing) {
-    PlotSeries series{label, {}, {}, PlotStyle::kLine};
-    for (std::size_t p = 0; p < std::min<std::size_t>(17, study.times.size()); ++p) {
-        const OffsetTime& t = study.times[p];
-        series.x.push_back(static_cast<double>(p));
-        series.y.push_back(t.ring_ms + factor * (t.smooth_ms + (with_tracing ? t.trace_ms : 0)));
-    }
-    return series;
+std::vector<StudyTable> tables_of(const FilterStudy& study) {
+    const auto plain = [](auto figure) { return [=](const FilterRow& row) { return std::invoke(figure, row.plain); }; };
+    const auto fitted = [](auto figure) {
+        return [=](const FilterRow& row) { return std::invoke(figure, row.fitted); };
+    };
+    return {table_of("table3", "Ray tracing and filter, modelled", study.rows,
+                     {{"p", &FilterRow::offset},
+                      {"rotations", &FilterRow::rotations},
+                      {"communication", plain(&ModelledTime::communication_ms), "ms"},
+                      {"filter", plain(&ModelledTime::filter_ms), "ms"},
+                      {"filter, fitted", fitted(&ModelledTime::filter_ms), "ms"},
+                      {"ray tracing", plain(tracing_ms), "ms"},
+                      {"ray tracing, fitted", fitted(tracing_ms), "ms"},
+                      {"total", plain(total_ms), "ms"},
+                      {"total, fitted", fitted(total_ms), "ms"}}),
+            table_of("table3-offsets", "Every offset, nothing fitted", study.times,
+                     {{"p", &OffsetTime::offset},
+                      {"rotations", &OffsetTime::rotations},
+                      {"communication", &OffsetTime::ring_ms, "ms"},
+                      {"filter", &OffsetTime::smooth_ms, "ms"},
+                      {"ray tracing", &OffsetTime::trace_ms, "ms"},
+                      {"total", &OffsetTime::total_ms, "ms"}},
+                     false)};
 }
 
 StudyPlot offsets_plot(const FilterStudy& study, bool with_tracing, double paper0, double paper16) {
-    const std::string fitted = fmt::format("modelled, computing x {:.2f}", study.factor);
     StudyPlot plot{with_tracing ? "table3-total" : "table3-filter",
                    with_tracing ? "Ray tracing and filter against the offset" : "Filtering against the offset",
-                   "offset p (pixels)",
-                   "time (modelled ms)",
-                   false,
-                   false,
-                   {offsets_series(study, "modelled, nothing fitted", 1, with_tracing),
-                    offsets_series(study, fitted, study.factor, with_tracing)}};
-    if (printed(0, study.size)) plot.series.push_back({"paper", {0, 16}, {paper0, paper16}, PlotStyle::kPaper});
+                   "offset p (pixels)", "time (modelled ms)"};
+    for (const double factor : {1.0, study.factor}) {
+        const std::string label = plot.series.empty() ? "modelled, nothing fitted"
+                                                      : fmt::format("modelled, computing x {:.2f}", study.factor);
+        plot.series.push_back(line(label, study.near(), &OffsetTime::offset, [&](const OffsetTime& t) {
+            return t.ring_ms + factor * (t.smooth_ms + (with_tracing ? t.trace_ms : 0));
+        }));
+    }
+    if (at_papers_size(study.size)) plot.series.push_back({"paper", {0, 16}, {paper0, paper16}, PlotStyle::kPaper});
     return plot;
 }
 
-std::vector<std::string> findings_of(const FilterStudy& study) {
-    const FilterRow &first = study.rows.front(), &last = study.rows.back();
+std::string finding_of_offset(const FilterRow& first, const FilterRow& last) {
     const double lost = filtering_ms(last.fitted) - filtering_ms(first.fitted);
     const double won = tracing_ms(first.fitted) - tracing_ms(last.fitted);
-    const auto count = static_cast<std::size_t>(last.offset + 1);
-    const std::uint32_t best = best_offset_of(study.times, count);
-    std::vector<std::string> findings = {fmt::format(
+    return fmt::format(
         "{} instead of {} costs {:.1f} ms more in rotations and {} {:.0f} ms of ray tracing (fitted): the offset {} "
         "with the filter.",
         offset_name(last.offset), offset_name(first.offset), lost, won >= 0 ? "saves" : "loses", std::abs(won),
-        won > lost ? "pays" : "does not pay")};
-    findings.push_back(
-        fmt::format("Rotations counted: {}, {} and {} for {}, {} and {}{}.", study.rows[0].rotations,
-                    study.rows[1].rotations, study.rows[2].rotations, offset_name(study.rows[0].offset),
-                    offset_name(study.rows[1].offset), offset_name(study.rows[2].offset),
-                    study.rows[0].rotations == 2 && study.rows[1].rotations == 18 && study.rows[2].rotations == 34
-                        ? ", as the paper counts them"
-                        : ""));
-    findings.push_back(
-        fmt::format("Nothing fitted, of the offsets 0..{} p = {} takes least in all: {:.1f} ms; by ray "
-                    "tracing alone it would be p = {}.",
-                    last.offset, best, study.times[best].total_ms(),
-                    std::min_element(study.times.begin(), study.times.begin() + last.offset + 1,
-                                     [](const OffsetTime& a, const OffsetTime& b) { return a.trace_ms < b.trace_ms; }) -
-                        study.times.begin()));
-    if (printed(0, study.size))
-        findings.push_back(fmt::format(
-            "The filter's arithmetic is {:.1f} ms by the budget and {:.1f} ms fitted, where Table 3 leaves 7 ms [D]{}",
-            first.plain.filter_ms, first.fitted.filter_ms,
-            first.fitted.filter_ms < paper::kFilterArithmeticMs / 2
-                ? ": the paper's filter takes several times what its additions do; how its program was written is not "
-                  "printed."
-                : "."));
-    return findings;
+        won > lost ? "pays" : "does not pay");
+}
+
+std::string finding_of_rotations(const std::vector<FilterRow>& rows) {
+    const auto counted = each(rows, &FilterRow::rotations);
+    return fmt::format("Rotations counted: {}, {} and {} for {}, {} and {}{}.", counted[0], counted[1], counted[2],
+                       offset_name(rows[0].offset), offset_name(rows[1].offset), offset_name(rows[2].offset),
+                       counted == std::vector<std::uint64_t>{2, 18, 34} ? ", as the paper counts them" : "");
+}
+
+std::string finding_of_best(const FilterStudy& study) {
+    const auto tried = std::span(study.times).first(study.rows.back().offset + 1);
+    const OffsetTime& best = least(tried, &OffsetTime::total_ms);
+    return fmt::format(
+        "Nothing fitted, of the offsets 0..{} p = {} takes least in all: {:.1f} ms; by ray tracing alone it would be p "
+        "= {}.",
+        tried.size() - 1, best.offset, best.total_ms(), least(tried, &OffsetTime::trace_ms).offset);
+}
+
+std::string finding_of_arithmetic(const FilterRow& row) {
+    return fmt::format(
+        "The filter's arithmetic is {:.1f} ms by the budget and {:.1f} ms fitted, where Table 3 leaves 7 ms [D]{}",
+        row.plain.filter_ms, row.fitted.filter_ms,
+        row.fitted.filter_ms < paper::kFilterArithmeticMs / 2
+            ? ": the paper's filter takes several times what its additions do; how its program was written is not "
+              "printed."
+            : ".");
 }
 
 }  // namespace
 
-StudyPage study_table3(Laboratory& lab, const std::vector<LabelledScene>& scenes) {
-    const LabelledScene scene = scenes.empty() ? embedded_scene("centre") : scenes.front();
-    const std::uint32_t size = lab.size(256);
-    const FilterStudy study = study_filter(lab, scene, size);
-    StudyPage page;
-    page.name = "table3";
-    page.title = "Table 3: ray tracing with the 3 x 3 filter";
-    page.question = "What does the filter cost, when a larger offset balances better and makes neighbours distant?";
-    page.method = {
-        fmt::format("{} at {} x {} on {} PEs of the SPA, a PE for each column; rendered and filtered over the ring for "
-                    "three offsets, rotations and their words counted.",
-                    scene.label, size, size, size),
-        "Filtering is its arithmetic by the instruction budget, and the rotations, each its words at the links' rate "
-        "and a synchronisation. The rate of rotations is calibrated on Tables 3 and 4 (0.3125 ms).",
-        "Fitted: computing is multiplied by Table 2's factor, rotations are not. The plots' other offsets follow from "
-        "the cost image and the shortest routes, which the three renders confirm."};
+StudyPage study_table3(Laboratory& lab, const Scenes& scenes) {
+    const LabelledScene scene = one_of(scenes);
+    const FilterStudy study = study_filter(lab, scene, lab.size(256));
+    StudyPage page = page_about("table3", {{"scene", scene.label},
+                                           {"size", study.size},
+                                           {"pes", study.size},
+                                           {"format", format_name(format_for(scene.scene))},
+                                           {"factor", study.factor}});
     page.comparisons = comparisons_of(study);
-    page.tables = {filter_table(study), offsets_table(study)};
-    page.plots = {
-        offsets_plot(study, false, paper::kFilter0Ms, paper::kFilter16Ms),
-        offsets_plot(study, true, paper::kTrace0Ms + paper::kFilter0Ms, paper::kTrace16Ms + paper::kFilter16Ms)};
-    page.findings = findings_of(study);
-    page.settings = {{"scene", scene.label},
-                     {"size", size},
-                     {"pes", size},
-                     {"format", format_name(format_for(scene.scene))},
-                     {"factor", study.factor}};
+    page.findings = {finding_of_offset(study.rows.front(), study.rows.back()), finding_of_rotations(study.rows),
+                     finding_of_best(study)};
+    if (at_papers_size(study.size)) page.findings.push_back(finding_of_arithmetic(study.rows.front()));
+    page.tables = tables_of(study);
+    page.plots = {offsets_plot(study, false, paper::kFilter0Ms, paper::kFilter16Ms),
+                  offsets_plot(study, true, paper::kFiltered0Ms, paper::kFiltered16Ms)};
     return page;
 }
 

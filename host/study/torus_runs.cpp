@@ -10,6 +10,7 @@
 #include "host/error.hpp"
 #include "host/machine/t805.hpp"
 #include "host/scene/generate.hpp"
+#include "host/study/grid_run.hpp"
 
 namespace raya {
 namespace {
@@ -55,15 +56,9 @@ void complete(TorusRun& run) {
 
 }  // namespace
 
-std::uint64_t TorusRun::rays() const {
-    const EventCounts& e = result.events;
-    return e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED] + e[RAYA_SHADOW];
-}
+std::uint64_t TorusRun::rays() const { return rays_of(result.events); }
 
-std::uint64_t TorusRun::tests() const {
-    const EventCounts& e = result.events;
-    return e[RAYA_SPHERE_TESTS] + e[RAYA_PLANE_TESTS] + e[RAYA_POLYGON_TESTS] + e[RAYA_CONE_TESTS];
-}
+std::uint64_t TorusRun::tests() const { return tests_of(result.events); }
 
 std::uint64_t TorusRun::packets() const {
     return std::accumulate(result.made.begin(), result.made.end(), std::uint64_t{0});

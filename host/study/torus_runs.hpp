@@ -21,9 +21,9 @@ struct TorusPlan {
     Divisions voxels{1, 1, 1};
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
-    PixelSubset pixels;
+    PixelSubset pixels = {};
     std::uint32_t queue = 0;               // packets; 0: the renderer's default
-    std::optional<std::uint32_t> bounces;  // empty: the machine's
+    std::optional<std::uint32_t> bounces = {};  // empty: the machine's
 };
 
 /// Figures of one render.

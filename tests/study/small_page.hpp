@@ -23,11 +23,10 @@ inline StudyPage small_page() {
                         {"u(8)", "", {}, 0.1 + 0.2, "not printed"},
                         {"lost", "rays", 0, 2, ""}};
     page.findings = {"It does.", "Nearly."};
-    StudyTable table{.name = "small", .title = "All offsets", .columns = {"p", "u", "which, if any"}, .rows = {}};
-    table.rows = {{std::int64_t{0}, 1.0 / 3, std::string("a|b \"c\"")},
-                  {std::int64_t{-7}, kInfinite, std::string("d,\ne")}};
-    page.tables = {table, {"small-long", "All loads", {"load (cycles)"}, {{123456.75}, {-0.0}}, false}};
-    page.plots = {{"small-u", "u over p", "offset p (pixels)", "imbalance u", false, true, {}}};
+    page.tables = {{"small", "All offsets", {{"p"}, {"u"}, {"which, if any"}}},
+                   {"small-long", "All loads", {{"load", "cycles"}}, {{123456.75}, {-0.0}}, false}};
+    page.tables[0].rows = {{0, 1.0 / 3, "a|b \"c\""}, {-7, kInfinite, "d,\ne"}};
+    page.plots = {{"small-u", "u over p", "offset p (pixels)", "imbalance u", Axes::kLogY}};
     page.plots[0].series = {{"ours", {0, 1, 2}, {1.5, 0.5, kInfinite}, PlotStyle::kLine},
                             {"steps", {0, 1, 2}, {1, 2, 3}, PlotStyle::kSteps},
                             {"scenes", {1, 1}, {0.25, 4}, PlotStyle::kPoints},

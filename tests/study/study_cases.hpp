@@ -2,7 +2,9 @@
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
+#include <set>
 
 #include "host/ring/cost_image.hpp"
 #include "host/study/page.hpp"
@@ -48,35 +50,43 @@ inline std::uint32_t sheared(std::uint32_t row, std::uint32_t column, std::uint3
     return static_cast<std::uint32_t>(c < 0 ? c + width : c);
 }
 
-inline double number(const Cell& cell) {
-    if (const auto* value = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*value);
-    return std::get<double>(cell);
-}
-
-inline const StudyTable& table_named(const StudyPage& page, const std::string& name) {
-    for (const StudyTable& table : page.tables)
-        if (table.name == name) return table;
-    throw std::out_of_range(name);
-}
-
 inline bool says(const StudyPage& page, const std::string& words) {
-    return std::any_of(page.findings.begin(), page.findings.end(),
-                       [&](const std::string& finding) { return finding.find(words) != std::string::npos; });
+    return std::ranges::any_of(page.findings,
+                               [&](const std::string& finding) { return finding.find(words) != finding.npos; });
 }
 
-/// Rows fit their columns, series have one length, nothing is without a name.
+/// Nothing is without a name or called as another; rows fit their columns; figures are finite; findings are sentences.
 inline void check_page(const StudyPage& page) {
     CHECK_FALSE(page.title.empty());
     CHECK_FALSE(page.question.empty());
-    CHECK_FALSE(page.comparisons.empty());
-    for (const StudyTable& table : page.tables)
-        CHECK(std::all_of(table.rows.begin(), table.rows.end(),
-                          [&](const auto& row) { return row.size() == table.columns.size(); }));
-    for (const StudyPlot& plot : page.plots) {
-        CHECK_FALSE(plot.x_label.empty());
-        CHECK_FALSE(plot.y_label.empty());
-        for (const PlotSeries& series : plot.series) CHECK(series.x.size() == series.y.size());
+    CHECK_FALSE(page.method.empty());
+    CHECK_FALSE(page.findings.empty());
+    const auto finite = [](double value) { return std::isfinite(value); };
+    std::set<std::string> names;
+    for (const StudyTable& table : page.tables) {
+        CAPTURE(table.name);
+        CHECK(names.insert(table.name).second);
+        CHECK_FALSE(table.rows.empty());
+        for (const auto& row : table.rows) {
+            REQUIRE(row.size() == table.columns.size());
+            CHECK(std::ranges::all_of(
+                row, [&](const Cell& cell) { return !std::get_if<double>(&cell) || finite(cell.number()); }));
+        }
     }
+    names.clear();
+    for (const StudyPlot& plot : page.plots) {
+        CAPTURE(plot.name);
+        CHECK(names.insert(plot.name).second);
+        CHECK_FALSE((plot.x_label.empty() || plot.y_label.empty()));
+        CHECK_FALSE(plot.series.empty());
+        for (const PlotSeries& series : plot.series) {
+            CHECK(series.x.size() == series.y.size());
+            CHECK((std::ranges::all_of(series.x, finite) && std::ranges::all_of(series.y, finite)));
+        }
+        CHECK_FALSE(plot.series.front().x.empty());
+    }
+    CHECK(
+        std::ranges::all_of(page.comparisons, [&](const Comparison& c) { return !c.what.empty() && finite(c.ours); }));
     for (const std::string& finding : page.findings) {
         CAPTURE(finding);
         CHECK(finding.find("nan") == std::string::npos);

@@ -5,10 +5,8 @@
 
 #include "host/machine/t805.hpp"
 #include "host/scene/generate.hpp"
-#include "host/study/divisions.hpp"
 #include "host/study/grid_papers.hpp"
 #include "host/study/studies.hpp"
-#include "tests/study/page_shape.hpp"
 #include "tests/study/study_cases.hpp"
 
 namespace raya {
@@ -34,8 +32,8 @@ double modelled_s(const GridRun& run) {
 }
 
 // 64, 256, 512 and 1024 objects whose tests are fewest at `best` of the powers.
-std::vector<DivisionsSeries> made_up_paper(const std::array<std::uint32_t, 4>& best) {
-    std::vector<DivisionsSeries> all;
+std::vector<std::vector<GridRun>> made_up_paper(const std::array<std::uint32_t, 4>& best) {
+    std::vector<std::vector<GridRun>> all;
     const std::uint64_t objects[] = {64, 256, 512, 1024};
     for (std::size_t i = 0; i < 4; ++i) {
         all.emplace_back();
@@ -63,14 +61,13 @@ TEST_CASE("divisions are the paper's, and powers of two as near to cubes as can 
 
 TEST_CASE("divisions tells where the least lies beside the paper's objects", "[study]") {
     const StudyPage page = divisions_page(96, made_up_paper({6, 8, 10, 13}), true);
-    check_shape(page);
     check_page(page);
-    const Comparison& tests = comparison_of(page, "fewest tests, 512 objects");
+    const Comparison& tests = page.comparison("fewest tests, 512 objects");
     CHECK(tests.paper == 512.0);
     CHECK(tests.ours == 1024);
     CHECK(tests.remark == "16x8x8");
-    CHECK(comparison_of(page, "least modelled time, 64 objects").ours == 64);
-    CHECK_FALSE(comparison_of(page, "least measured time, 64 objects").paper);
+    CHECK(page.comparison("least modelled time, 64 objects").ours == 64);
+    CHECK_FALSE(page.comparison("least measured time, 64 objects").paper);
     CHECK(says(page,
                "Fewest tests: at divisions 64 for 64 objects, 256 for 256 objects, 1024 for 512 objects, 8192 for 1024 "
                "objects; divisions = objects is it for 2 of 4; 1 at the last division tried, so it may lie beyond."));
@@ -83,7 +80,7 @@ TEST_CASE("divisions tells where the least lies beside the paper's objects", "[s
 TEST_CASE("divisions' falls are figures at 32 over those at 1024", "[study]") {
     std::mt19937 random(51);
     for (int i = 0; i < 100; ++i) {
-        std::vector<DivisionsSeries> all(1);
+        std::vector<std::vector<GridRun>> all(1);
         for (std::uint32_t k = 0; k <= 13; ++k)
             all[0].push_back(made_up(k, 1024, 1 + random() % 100000, 1 + random() % 1000, 1 + double(random() % 100)));
         CAPTURE(i);
@@ -92,15 +89,14 @@ TEST_CASE("divisions' falls are figures at 32 over those at 1024", "[study]") {
         const std::string what = "32 over 1024 divisions, 1024 objects: ";
         const GridRun &few = all[0][5], &many = all[0][10];
         const auto check = [&](const char* figure, double ours, double paper) {
-            CHECK(comparison_of(page, what + figure).ours == Approx(ours).epsilon(1e-12));
-            CHECK(comparison_of(page, what + figure).paper == paper);
+            CHECK(page.comparison(what + figure).ours == Approx(ours).epsilon(1e-12));
+            CHECK(page.comparison(what + figure).paper == paper);
         };
         check("modelled time", modelled_s(few) / modelled_s(many), 313.0 / 60);
         check("measured time", few.measured_ms / many.measured_ms, 313.0 / 60);
         check("tests", double(few.events[RAYA_SPHERE_TESTS]) / double(many.events[RAYA_SPHERE_TESTS]), 5);
-        const auto& row = table_of(page, "divisions").rows.at(5);
-        CHECK(cell_number(row[5]) == double(few.events[RAYA_SPHERE_TESTS]));
-        CHECK(cell_number(row[9]) == Approx(modelled_s(few)).epsilon(1e-12));
+        CHECK(page.value("divisions", 5, "tests") == double(few.events[RAYA_SPHERE_TESTS]));
+        CHECK(page.value("divisions", 5, "modelled") == Approx(modelled_s(few)).epsilon(1e-12));
     }
 }
 
@@ -108,24 +104,24 @@ TEST_CASE("one voxel tests every object for every ray, and finer ones fewer", "[
     Session session(choose_device(""));
     Laboratory lab(session, 17);
     const StudyPage page = study_divisions(lab, {{"even", generate_uniform(64, {4, 4, 4})}});
-    check_shape(page);
+    check_page(page);
     for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);
-    const auto& rows = table_of(page, "divisions").rows;
-    REQUIRE(rows.size() == 14);
-    const double rays = cell_number(rows[0][4]);
+    REQUIRE(page.table("divisions").rows.size() == 14);
+    const auto at = [&](std::size_t row, const char* label) { return page.value("divisions", row, label); };
+    const double rays = at(0, "rays");
     CHECK(rays > 17 * 17);
-    CHECK(cell_number(rows[0][3]) == 0);
-    CHECK(cell_number(rows[0][5]) <= 64 * rays);
-    CHECK(cell_number(rows[0][6]) <= rays);
-    CHECK(cell_number(rows[0][5]) <= 64 * cell_number(rows[0][6]));
-    CHECK(cell_number(rows[0][5]) > 48 * cell_number(rows[0][6]));  // a shadow ray may end before the last object
-    for (const auto& row : rows) {
-        CHECK(cell_number(row[4]) == rays);  // the image does not depend on the grid
-        CHECK(cell_number(row[7]) == Approx(cell_number(row[5]) / rays));
+    CHECK(at(0, "copies") == 0);
+    CHECK(at(0, "tests") <= 64 * rays);
+    CHECK(at(0, "steps") <= rays);
+    CHECK(at(0, "tests") <= 64 * at(0, "steps"));
+    CHECK(at(0, "tests") > 48 * at(0, "steps"));  // a shadow ray may end before the last object
+    for (std::size_t row = 0; row < 14; ++row) {
+        CHECK(at(row, "rays") == rays);  // the image does not depend on the grid
+        CHECK(at(row, "tests a ray") == Approx(at(row, "tests") / rays));
     }
-    CHECK(cell_number(rows[6][5]) < cell_number(rows[0][5]) / 8);
-    CHECK(cell_number(rows[13][6]) > cell_number(rows[6][6]));
-    CHECK(cell_number(rows[13][3]) > cell_number(rows[6][3]));
+    CHECK(at(6, "tests") < at(0, "tests") / 8);
+    CHECK(at(13, "steps") > at(6, "steps"));
+    CHECK(at(13, "copies") > at(6, "copies"));
 }
 
 }  // namespace

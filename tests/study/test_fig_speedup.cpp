@@ -1,7 +1,6 @@
 // Fig. 9: every figure against plain sums, and what the page says of each kind of image.
 #include <cmath>
 
-#include "host/study/fig_speedup.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/studies.hpp"
 #include "tests/study/study_cases.hpp"
@@ -20,14 +19,16 @@ PlainLoad square_load(const CostImage& image, std::uint32_t a) {
     return plain_load(image, a * a, [&](std::uint32_t row, std::uint32_t column) { return row % a * a + column % a; });
 }
 
-void check_row(const CostImage& image, const std::vector<Cell>& row) {
-    const auto pes = static_cast<std::uint32_t>(number(row[0]));
+void check_row(const CostImage& image, const StudyPage& page, std::size_t row) {
+    const auto pes = static_cast<std::uint32_t>(page.value("fig9", row, "P"));
     const auto root = static_cast<std::uint32_t>(std::floor(std::sqrt(pes) + 0.5));
-    std::size_t column = 0;
-    for (const std::uint32_t p : {0u, 16 % image.width, root})
+    const std::pair<const char*, std::uint32_t> offsets[] = {
+        {"p = 0", 0}, {"p = 16", 16 % image.width}, {"p = round(sqrt(P))", root}};
+    for (const auto& [label, p] : offsets)
         for (const bool block : {false, true}) {
             CAPTURE(pes, p, block);
-            CHECK(number(row[++column]) == cyclic_load(image, pes, p, block).speedup());
+            CHECK(page.value("fig9", row, std::string(label) + (block ? ", block fold" : ", cyclic fold")) ==
+                  cyclic_load(image, pes, p, block).speedup());
         }
 }
 
@@ -40,15 +41,14 @@ TEST_CASE("fig9's speed-ups are sum / largest for every P, offset and fold", "[s
         const CostImage image = random_costs(random, side);
         const StudyPage page = speedup_page("random", image);
         check_page(page);
-        const StudyTable& table = table_named(page, "fig9");
-        REQUIRE(table.rows.size() == side);
-        for (const auto& row : table.rows) check_row(image, row);
-        const StudyTable& squares = table_named(page, "fig9-squares");
-        REQUIRE(squares.rows.size() == static_cast<std::size_t>(std::sqrt(side)) - 1);
-        for (std::size_t n = 0; n < squares.rows.size(); ++n) {
+        REQUIRE(page.table("fig9").rows.size() == side);
+        for (std::size_t row = 0; row < side; ++row) check_row(image, page, row);
+        const std::size_t squares = page.table("fig9-squares").rows.size();
+        REQUIRE(squares == static_cast<std::size_t>(std::sqrt(side)) - 1);
+        for (std::size_t n = 0; n < squares; ++n) {
             const auto a = static_cast<std::uint32_t>(n + 2);
-            CHECK(number(squares.rows[n][0]) == a * a);
-            CHECK(number(squares.rows[n][1]) == square_load(image, a).speedup());
+            CHECK(page.value("fig9-squares", n, "P") == a * a);
+            CHECK(page.value("fig9-squares", n, "A x A, 2-D") == square_load(image, a).speedup());
         }
         for (const Comparison& c : page.comparisons) CHECK_FALSE(c.paper);
     }

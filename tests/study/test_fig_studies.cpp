@@ -42,14 +42,6 @@ std::vector<double> imbalances_of(const CostImage& image) {
     return all;
 }
 
-const Comparison& comparison(const StudyPage& page, const std::string& what) {
-    for (const Comparison& c : page.comparisons)
-        if (c.what == what) return c;
-    throw std::runtime_error(page.name + " compares no " + what);
-}
-
-std::int64_t count_of(const Cell& cell) { return std::get<std::int64_t>(cell); }
-
 // The first offset of the least imbalance among the first `count`.
 std::size_t best_of(const std::vector<double>& u, std::size_t count) {
     std::size_t best = 0;
@@ -61,19 +53,18 @@ std::size_t best_of(const std::vector<double>& u, std::size_t count) {
 void check_loads_page(const StudyPage& page, const CostImage& image, bool printed) {
     const Sums columns = loads_of(image, 0), cyclic = loads_of(image, 16);
     const auto ms = [](double cycles) { return Approx(cycles * 100e-6).epsilon(1e-14); };  // 100 ns a cycle
-    CHECK(comparison(page, "mean load").ours == ms(mean_of(columns)));
-    CHECK(comparison(page, "largest load, p = 0").ours == ms(max_of(columns)));
-    CHECK(comparison(page, "largest load, p = 16").ours == ms(max_of(cyclic)));
-    CHECK(comparison(page, "u(0)").ours == imbalance_of(columns));
-    CHECK(comparison(page, "u(16)").ours == imbalance_of(cyclic));
+    CHECK(page.comparison("mean load").ours == ms(mean_of(columns)));
+    CHECK(page.comparison("largest load, p = 0").ours == ms(max_of(columns)));
+    CHECK(page.comparison("largest load, p = 16").ours == ms(max_of(cyclic)));
+    CHECK(page.comparison("u(0)").ours == imbalance_of(columns));
+    CHECK(page.comparison("u(16)").ours == imbalance_of(cyclic));
     for (const Comparison& c : page.comparisons) CHECK(c.paper.has_value() == printed);
     REQUIRE(page.tables.size() == 1);
     REQUIRE(page.tables[0].rows.size() == image.width);
     for (std::size_t pe = 0; pe < image.width; ++pe) {
-        const std::vector<Cell>& row = page.tables[0].rows[pe];
-        CHECK(count_of(row.at(0)) == static_cast<std::int64_t>(pe));
-        CHECK(count_of(row.at(1)) == static_cast<std::int64_t>(columns[pe]));
-        CHECK(count_of(row.at(2)) == static_cast<std::int64_t>(cyclic[pe]));
+        CHECK(page.tables[0].at(pe, "PE") == Cell(pe));
+        CHECK(page.tables[0].at(pe, "p = 0") == Cell(columns[pe]));
+        CHECK(page.tables[0].at(pe, "p = 16") == Cell(cyclic[pe]));
     }
     REQUIRE(page.plots.size() == 1);
     REQUIRE(page.plots[0].series.size() == 3);
@@ -85,9 +76,9 @@ void check_loads_page(const StudyPage& page, const CostImage& image, bool printe
 
 void check_best(const StudyPage& page, const std::vector<double>& u) {
     const std::size_t near = best_of(u, 17), best = best_of(u, u.size());
-    const Comparison& of_all = comparison(page, fmt::format("best p of all {}", u.size()));
-    CHECK(comparison(page, "best p of 0..16").ours == static_cast<double>(near));
-    CHECK(comparison(page, "best p of 0..16").remark == fmt::format("u = {:.3f}", u[near]));
+    const Comparison& of_all = page.comparison(fmt::format("best p of all {}", u.size()));
+    CHECK(page.comparison("best p of 0..16").ours == static_cast<double>(near));
+    CHECK(page.comparison("best p of 0..16").remark == fmt::format("u = {:.3f}", u[near]));
     CHECK(of_all.ours == static_cast<double>(best));
     CHECK(of_all.remark == fmt::format("u = {:.3f}", u[best]));
     const auto better = std::count_if(u.begin(), u.end(), [&](double value) { return value < u[16]; });
@@ -96,15 +87,15 @@ void check_best(const StudyPage& page, const std::vector<double>& u) {
 
 void check_imbalance_page(const StudyPage& page, const CostImage& image, bool printed) {
     const std::vector<double> u = imbalances_of(image);
-    for (const std::size_t p : {0, 8, 16}) CHECK(comparison(page, fmt::format("u({})", p)).ours == u[p]);
-    CHECK(comparison(page, "u(0)").paper.has_value() == printed);
-    CHECK(comparison(page, "u(16)").paper.has_value() == printed);
-    CHECK_FALSE(comparison(page, "u(8)").paper.has_value());
+    for (const std::size_t p : {0, 8, 16}) CHECK(page.comparison(fmt::format("u({})", p)).ours == u[p]);
+    CHECK(page.comparison("u(0)").paper.has_value() == printed);
+    CHECK(page.comparison("u(16)").paper.has_value() == printed);
+    CHECK_FALSE(page.comparison("u(8)").paper.has_value());
     check_best(page, u);
     REQUIRE(page.tables.at(0).rows.size() == u.size());
     for (std::size_t p = 0; p < u.size(); ++p) {
-        CHECK(count_of(page.tables[0].rows[p].at(0)) == static_cast<std::int64_t>(p));
-        CHECK(std::get<double>(page.tables[0].rows[p].at(1)) == u[p]);
+        CHECK(page.tables[0].at(p, "p") == Cell(p));
+        CHECK(page.tables[0].at(p, "u") == Cell(u[p]));
     }
     REQUIRE(page.plots.size() == 2);
     CHECK(page.plots[0].series.at(0).y == std::vector<double>(u.begin(), u.begin() + 17));
@@ -158,9 +149,9 @@ TEST_CASE("a study takes the scene that is given, and calls only its own calibra
     for (const StudyPage& page : {fig7, fig8}) {
         CHECK(page.settings["scene"] == "mine.nff");
         CHECK(page.settings["size"] == 24);
-        CHECK(comparison(page, "u(0)").remark.empty());
+        CHECK(page.comparison("u(0)").remark.empty());
     }
-    CHECK(comparison(study_fig8(lab, {}), "u(0)").remark.empty());  // centre.nff, but not of the size calibrated on
+    CHECK(study_fig8(lab, {}).comparison("u(0)").remark.empty());  // centre.nff, but not of the size calibrated on
 }
 
 TEST_CASE("figure 8 at the paper's size is beside the paper's figures", "[study]") {
@@ -170,10 +161,10 @@ TEST_CASE("figure 8 at the paper's size is beside the paper's figures", "[study]
     check_imbalance_page(page, lab.costs(embedded_scene("centre"), 256).trace, true);
     CHECK(page.settings["size"] == 256);
     CHECK(page.settings["pes"] == 256);
-    CHECK(comparison(page, "u(0)").paper.value() == Approx(1.580).margin(0.0005));
-    CHECK(comparison(page, "u(16)").paper.value() == Approx(0.118).margin(0.0005));
-    CHECK(comparison(page, "best p of 0..16").paper == 16.0);
-    CHECK_THAT(comparison(page, "u(0)").remark, Catch::Contains("calibrated"));
+    CHECK(page.comparison("u(0)").paper.value() == Approx(1.580).margin(0.0005));
+    CHECK(page.comparison("u(16)").paper.value() == Approx(0.118).margin(0.0005));
+    CHECK(page.comparison("best p of 0..16").paper == 16.0);
+    CHECK_THAT(page.comparison("u(0)").remark, Catch::Contains("calibrated"));
 }
 
 TEST_CASE("figure 8 of all 512 offsets takes less than 10 s after the render", "[study]") {

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "host/study/formats_findings.hpp"
 #include "host/study/formats_report.hpp"
 
 namespace raya {
@@ -45,15 +44,15 @@ TEST_CASE("the overview takes the worst over all scenes", "[study]") {
     const auto all = formats_overview(made_up());
     REQUIRE(all.size() == 4);
     CHECK(all[0].worst_scene == "two");
-    CHECK(all[0].lowest_psnr_db == 55);
+    CHECK(all[0].psnr_db.lowest == 55);
     CHECK(all[1].worst_scene == "one");
-    CHECK(all[1].lowest_psnr_db == 42);
-    CHECK(all[1].highest_psnr_db == 44);
+    CHECK(all[1].psnr_db.lowest == 42);
+    CHECK(all[1].psnr_db.highest == 44);
     CHECK(all[1].largest == 0.75);
-    CHECK(all[1].lowest_share_over == 0.02);
-    CHECK(all[1].highest_share_over == 0.03);
-    CHECK(all[1].lowest_ratio == 1.5);
-    CHECK(all[1].highest_ratio == 2);
+    CHECK(all[1].share_over.lowest == 0.02);
+    CHECK(all[1].share_over.highest == 0.03);
+    CHECK(all[1].ratio.lowest == 1.5);
+    CHECK(all[1].ratio.highest == 2);
     CHECK(formats_overview({}).empty());
 }
 

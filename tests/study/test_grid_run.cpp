@@ -40,7 +40,7 @@ TEST_CASE("a PE's grid and a node of the torus count the same rays, walks and st
         }
         CHECK(run.events[RAYA_SPHERE_TESTS] <= node[RAYA_SPHERE_TESTS]);  // a shadow ray may end before the last object
         CHECK(run.objects == scene.spheres.size());
-        CHECK(voxels_of(run) == std::uint64_t{divisions[0]} * divisions[1] * divisions[2]);
+        CHECK(run.voxels() == std::uint64_t{divisions[0]} * divisions[1] * divisions[2]);
         CHECK(run.measured_ms > 0);
     }
 }

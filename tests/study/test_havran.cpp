@@ -4,9 +4,7 @@
 #include <random>
 
 #include "host/scene/generate.hpp"
-#include "host/study/havran.hpp"
 #include "host/study/studies.hpp"
-#include "tests/study/page_shape.hpp"
 #include "tests/study/study_cases.hpp"
 
 namespace raya {
@@ -35,7 +33,6 @@ TEST_CASE("havran's figures are means over all rays beside the published ones", 
             random_run(random, "lattice", {20, 20, 20}), random_run(random, "lattice", {44, 44, 44}),
             random_run(random, "balls", {46, 3, 46}),    random_run(random, "mine.nff", {20, 20, 20})};
         const StudyPage page = havran_page(129, runs);
-        check_shape(page);
         check_page(page);
         const double tests[] = {358.66, 72.54, 20.67, 9.26}, steps[] = {5.69, 12.40, 5.09, 10.56};
         REQUIRE(page.comparisons.size() == 12);
@@ -59,7 +56,7 @@ TEST_CASE("havran's figures are means over all rays beside the published ones", 
 TEST_CASE("havran says so where nothing was published", "[study]") {
     std::mt19937 random(53);
     const StudyPage page = havran_page(129, {random_run(random, "mine.nff", {20, 20, 20})});
-    check_shape(page);
+    check_page(page);
     CHECK(says(page, "Tests a ray: none were published for these grids."));
 }
 
@@ -80,24 +77,24 @@ TEST_CASE("havran's rays are SPD's in kind, and the same in both grids of a scen
     Session session(choose_device(""));
     Laboratory lab(session, 25);
     const StudyPage page = study_havran(lab, {});
-    check_shape(page);
-    const auto& rows = table_of(page, "havran").rows;
-    REQUIRE(rows.size() == 4);
+    check_page(page);
+    REQUIRE(page.table("havran").rows.size() == 4);
+    const auto at = [&](std::size_t row, const char* label) { return page.value("havran", row, label); };
     for (std::size_t n = 0; n < 4; ++n) {
         CAPTURE(n);
-        CHECK(cell_number(rows[n][3]) == 25 * 25);
-        CHECK(cell_number(rows[n][5]) == 0);  // nothing is transparent
-        for (std::size_t column : {3u, 4u, 6u}) CHECK(cell_number(rows[n][column]) == cell_number(rows[n ^ 1][column]));
-        CHECK(cell_number(rows[n][7]) <= cell_number(rows[n][3]) + cell_number(rows[n][4]) + cell_number(rows[n][6]));
-        CHECK(cell_number(rows[n][9]) >= cell_number(rows[n][7]));
+        CHECK(at(n, "eye rays") == 25 * 25);
+        CHECK(at(n, "refracted") == 0);  // nothing is transparent
+        for (const char* same : {"eye rays", "reflected", "shadow rays"}) CHECK(at(n, same) == at(n ^ 1, same));
+        CHECK(at(n, "walks") <= at(n, "eye rays") + at(n, "reflected") + at(n, "shadow rays"));
+        CHECK(at(n, "steps") >= at(n, "walks"));
     }
     for (const std::size_t coarse : {0u, 2u}) {
-        CHECK(cell_number(rows[coarse][8]) > cell_number(rows[coarse + 1][8]));  // tests
-        CHECK(cell_number(rows[coarse][9]) < cell_number(rows[coarse + 1][9]));  // steps
+        CHECK(at(coarse, "tests") > at(coarse + 1, "tests"));
+        CHECK(at(coarse, "steps") < at(coarse + 1, "steps"));
     }
-    const double reflected = cell_number(rows[0][4]) / (25 * 25), shadow = cell_number(rows[0][6]) / (25 * 25);
-    CHECK(reflected == Approx(175095.0 / 263169).epsilon(0.1));  // balls as SPD publishes it, at 513 x 513
-    CHECK(shadow == Approx(954368.0 / 263169).epsilon(0.1));
+    // Balls as SPD publishes it, at 513 x 513.
+    CHECK(at(0, "reflected") / (25 * 25) == Approx(175095.0 / 263169).epsilon(0.1));
+    CHECK(at(0, "shadow rays") / (25 * 25) == Approx(954368.0 / 263169).epsilon(0.1));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <list>
 
-#include "host/study/images.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/studies.hpp"
 #include "tests/study/study_cases.hpp"
@@ -38,22 +37,22 @@ TEST_CASE("the images' efficiencies are mean / largest load", "[study]") {
         CAPTURE(kSeed, i, pes, p);
         const StudyPage page = images_page(pes, images);
         check_page(page);
-        const StudyTable& table = table_named(page, "images");
-        REQUIRE(table.rows.size() == images.size());
+        REQUIRE(page.table("images").rows.size() == images.size());
+        const std::string shifted = ", p = " + std::to_string(p);
         double least = 1, most = 0;
         for (std::size_t n = 0; n < images.size(); ++n) {
             const PlainLoad columns = load_of_offset(images[n]->trace, pes, 0);
             const PlainLoad cyclic = load_of_offset(images[n]->trace, pes, p);
-            CHECK(number(table.rows[n][3]) == images[n]->trace.width);
-            CHECK(number(table.rows[n][4]) == columns.imbalance());
-            CHECK(number(table.rows[n][5]) == columns.efficiency());
-            CHECK(number(table.rows[n][6]) == cyclic.imbalance());
-            CHECK(number(table.rows[n][7]) == cyclic.efficiency());
+            CHECK(page.value("images", n, "side") == images[n]->trace.width);
+            CHECK(page.value("images", n, "u, p = 0") == columns.imbalance());
+            CHECK(page.value("images", n, "efficiency, p = 0") == columns.efficiency());
+            CHECK(page.value("images", n, "u" + shifted) == cyclic.imbalance());
+            CHECK(page.value("images", n, "efficiency" + shifted) == cyclic.efficiency());
             least = std::min(least, columns.efficiency());
             most = std::max(most, columns.efficiency());
         }
-        CHECK(page.comparisons[2].ours == least);
-        CHECK(page.comparisons[3].ours == most);
+        CHECK(page.comparison("lowest of all, p = 0").ours == least);
+        CHECK(page.comparison("highest of all, p = 0").ours == most);
         REQUIRE(page.plots[0].series.size() == 4);
         for (const PlotSeries& series : page.plots[0].series) CHECK(series.x == std::vector<double>{1, 2, 3});
     }
@@ -101,17 +100,16 @@ TEST_CASE("study images takes ten scenes at two sizes", "[study]") {
     Laboratory lab(session, 16);
     const StudyPage page = study_images(lab, {});
     check_page(page);
-    const StudyTable& table = table_named(page, "images");
+    const StudyTable& table = page.table("images");
     REQUIRE(table.rows.size() == 20);
     const std::vector<LabelledScene> scenes = paper_like_scenes();
     for (std::size_t n = 0; n < 20; ++n) {
-        CHECK(std::get<std::string>(table.rows[n][1]) == scenes[n % 10].label);
-        CHECK(std::get<std::int64_t>(table.rows[n][2]) ==
-              static_cast<std::int64_t>(scenes[n % 10].scene.object_count()));
-        CHECK(number(table.rows[n][3]) == (n < 10 ? 16 : 32));
+        CHECK(table.at(n, "scene").text() == scenes[n % 10].label);
+        CHECK(table.at(n, "objects").number() == static_cast<double>(scenes[n % 10].scene.object_count()));
+        CHECK(table.at(n, "side").number() == (n < 10 ? 16 : 32));
     }
     const PlainLoad last = load_of_offset(lab.costs(scenes[9], 32).trace, 16, 4);
-    CHECK(number(table.rows[19][7]) == last.efficiency());
+    CHECK(table.at(19, "efficiency, p = 4").number() == last.efficiency());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "host/ring/schedule.hpp"
+#include "host/study/arrays.hpp"
 #include "host/study/laboratory.hpp"
 #include "tests/ring/render_scene.hpp"
 
@@ -73,7 +74,7 @@ TEST_CASE("loads from the cost image are those that the SPA's PEs count, for any
     for (const auto& [pes, p] : {std::pair{kSize, 0u}, {kSize, 16u}, {10u, 3u}, {50u, 35u}}) {
         CAPTURE(name, pes, p);
         const RingResult spa = render_on_spa(session, project_scene(name), kSize, pes, p);
-        const Load expected = static_load(costs.trace, make_mapping("cyclic", kSize, kSize, pes, p, "cyclic"));
+        const Load expected = static_load(costs.trace, cyclic(kSize, kSize, pes, p));
         CHECK(expected.per_pe == spa.all.load.per_pe);
         CHECK(costs.events == spa.all.events);
         CHECK(costs.job_words == spa.pe_memory.job_words);
@@ -96,8 +97,7 @@ TEST_CASE("supersampling costs something where the mask says so, nothing elsewhe
     CHECK(costs.recomputed > 0);
     CHECK(costs.recomputed < kSize * kSize);
     CHECK(total_cycles(costs.supersample) == weighed(spa.phases.back().events));
-    CHECK(static_load(costs.supersample, make_mapping("cyclic", kSize, kSize, 20, 7, "cyclic")).per_pe ==
-          spa.phases.back().load.per_pe);
+    CHECK(static_load(costs.supersample, cyclic(kSize, kSize, 20, 7)).per_pe == spa.phases.back().load.per_pe);
     CHECK(costs.trace.cycles == lab.costs(scene, kSize).trace.cycles);
     CHECK(total_cycles(costs.trace) == weighed(costs.events));
 }

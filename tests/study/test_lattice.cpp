@@ -114,18 +114,17 @@ TEST_CASE("the lattice page has every offset's u, and draws the conclusion that 
         CAPTURE(kSeed, i);
         const StudyPage page = lattice_page(c.scenes);
         check_page(page);
-        const StudyTable& table = table_named(page, "lattice");
-        REQUIRE(table.rows.size() == kSide);
+        REQUIRE(page.table("lattice").rows.size() == kSide);
         std::vector<double> u;
         for (std::uint32_t p = 0; p < kSide; ++p) {
             u.push_back(c.mean_u(p));
-            CHECK(number(table.rows[p][2]) == u[p]);
+            CHECK(page.value("lattice", p, "mean u") == u[p]);
         }
         const int verdict = verdict_of(u, spread.longer, spread.as_long, u[6]);
         CAPTURE(verdict, page.findings[0]);
         CHECK(page.findings[0].find(words[verdict]) != std::string::npos);
         ++seen[verdict];
-        CHECK(page.comparisons[1].ours == *std::min_element(u.begin(), u.end()));
+        CHECK(page.comparison("lowest mean u of all offsets").ours == *std::min_element(u.begin(), u.end()));
     }
     CHECK(seen[0] > 0);
     CHECK(seen[1] > 0);

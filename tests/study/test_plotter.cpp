@@ -181,12 +181,12 @@ TEST_CASE("a page without plots needs no Python", "[plotter]") {
 
 TEST_CASE("plots without a point, with points of no place and of formulas for labels are drawn", "[plotter]") {
     Drawing drawing;
-    StudyPlot plot{"none", "no series", "x", "y", true, true, {}};
+    StudyPlot plot{"none", "no series", "x", "y", Axes::kLogBoth};
     drawing.page.plots = {plot};
-    plot = {"nowhere", "nothing finite", "x", "y", true, true, {{"a", {1, kInfinite, 0}, {-kInfinite, 1, 1}}}};
+    plot = {"nowhere", "nothing finite", "x", "y", Axes::kLogBoth, {{"a", {1, kInfinite, 0}, {-kInfinite, 1, 1}}}};
     drawing.page.plots.push_back(plot);
-    plot = {
-        "powers", "$2^{4$", "_$", "y", true, false, {{"_$x", {4, 1048576, 64, 0}, {3, 0, 3, 3}, PlotStyle::kPaper}}};
+    plot = {"powers", "$2^{4$",    "_$",
+            "y",      Axes::kLogX, {{"_$x", {4, 1048576, 64, 0}, {3, 0, 3, 3}, PlotStyle::kPaper}}};
     drawing.page.plots.push_back(plot);
     const PlotOutcome outcome = drawing.draw();
     INFO(outcome.reason);

@@ -5,7 +5,6 @@
 
 #include "host/study/laboratory.hpp"
 #include "host/study/page_writer.hpp"
-#include "host/study/scale.hpp"
 #include "host/study/studies.hpp"
 #include "tests/study/study_cases.hpp"
 
@@ -46,30 +45,39 @@ double bound_of(const CostImage& image, std::uint32_t pes) {
     return static_cast<double>(sum) / static_cast<double>(std::max(largest, (sum + pes - 1) / pes)) / pes;
 }
 
-// Columns of the table: P, bound, the ways without the block fold, then with it.
-void check_row(const CostImage& image, const std::vector<Cell>& row) {
-    const auto pes = static_cast<std::uint32_t>(number(row[0]));
+const char* const kWays[] = {"p = 16", "p = sqrt(P)", "p = sqrt(P) or W / sqrt(P)", "column split"};
+
+void check_bounded(const StudyTable& table, std::size_t row) {
+    const double bound = table.at(row, "upper bound").number();
+    for (std::size_t n = 2; n < table.columns.size(); ++n) CHECK(table.rows[row][n].number() <= bound);
+}
+
+void check_row(const CostImage& image, const StudyTable& table, std::size_t row) {
+    const auto at = [&](const std::string& label) { return table.at(row, label).number(); };
+    const auto pes = static_cast<std::uint32_t>(at("P"));
     const std::uint32_t w = image.width;
     const double root = std::sqrt(pes);
     const std::uint32_t offsets[] = {16 % w, rounded(root, w), rounded(pes > w ? w / root : root, w), 0};
     CAPTURE(pes);
-    const double bound = number(row[1]);
-    CHECK(bound == bound_of(image, pes));
+    CHECK(at("upper bound") == bound_of(image, pes));
     for (std::size_t n = 0; n < 4; ++n) {
         CAPTURE(n);
-        CHECK(number(row[2 + n]) == cyclic_efficiency(image, pes, offsets[n], false));
-        CHECK(number(row[8 + n]) == cyclic_efficiency(image, pes, offsets[n], true));
+        CHECK(at(kWays[n]) == cyclic_efficiency(image, pes, offsets[n], false));
+        CHECK(at(std::string(kWays[n]) + ", block fold") == cyclic_efficiency(image, pes, offsets[n], true));
     }
-    CHECK(number(row[6]) == grid_efficiency(image, pes));
-    for (std::size_t n = 2; n < row.size(); ++n) CHECK(number(row[n]) <= bound);
+    CHECK(at("2-D, A x B PEs") == grid_efficiency(image, pes));
+    check_bounded(table, row);
 }
 
 // For how many P between the side and the pixels a column of the table has 90 % or more of 2-D's.
-std::string kept_text(const StudyTable& table, std::size_t column, std::uint32_t side) {
+std::string kept_text(const StudyTable& table, const std::string& label, std::uint32_t side) {
     int kept = 0;
-    for (const auto& row : table.rows)
-        kept += number(row[0]) > side && number(row[0]) < side * side && number(row[column]) >= 0.9 * number(row[6]);
-    return fmt::format("{}: {}", table.columns[column], kept);
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const double pes = table.at(row, "P").number();
+        kept += pes > side && pes < side * side &&
+                table.at(row, label).number() >= 0.9 * table.at(row, "2-D, A x B PEs").number();
+    }
+    return fmt::format("{}: {}", label, kept);
 }
 
 TEST_CASE("scale's efficiencies are those of plain sums and below the bound", "[study]") {
@@ -81,13 +89,14 @@ TEST_CASE("scale's efficiencies are those of plain sums and below the bound", "[
         const CostImage image = random_costs(random, side);
         const StudyPage page = scale_page("random", image);
         check_page(page);
-        const StudyTable& table = table_named(page, "scale");
+        const StudyTable& table = page.table("scale");
         REQUIRE(table.rows.size() == (side == 16 ? 5 : 7));  // 2^4 .. 2^8 or 2^10
-        for (const auto& row : table.rows) check_row(image, row);
-        CHECK(says(page, fmt::format("({}; {}; {}; {}; {})", kept_text(table, 2, side), kept_text(table, 3, side),
-                                     kept_text(table, 4, side), kept_text(table, 5, side), kept_text(table, 7, side))));
-        for (std::size_t n = 2; n < 12; ++n) CHECK(number(table.rows.back()[n]) == number(table.rows.back()[1]));
-        CHECK(table.columns[7] == "random");
+        for (std::size_t row = 0; row < table.rows.size(); ++row) check_row(image, table, row);
+        std::string kept;
+        for (const char* label : {kWays[0], kWays[1], kWays[2], kWays[3], "random"})
+            kept += (kept.empty() ? "(" : "; ") + kept_text(table, label, side);
+        CHECK(says(page, kept + ")"));
+        for (std::size_t n = 2; n < 12; ++n) CHECK(table.rows.back()[n] == table.rows.back()[1]);
     }
 }
 
@@ -98,10 +107,9 @@ TEST_CASE("scale takes sides that are no powers of two", "[study]") {
         const CostImage image = random_costs(random, side);
         const StudyPage page = scale_page("random", image);
         check_page(page);
-        const StudyTable& table = table_named(page, "scale");
-        CHECK(number(table.rows.back()[0]) * 2 > side * side);
-        for (const auto& row : table.rows)
-            for (std::size_t n = 2; n < row.size(); ++n) CHECK(number(row[n]) <= number(row[1]));
+        const StudyTable& table = page.table("scale");
+        CHECK(table.at(table.rows.size() - 1, "P").number() * 2 > side * side);
+        for (std::size_t row = 0; row < table.rows.size(); ++row) check_bounded(table, row);
     }
 }
 
@@ -115,9 +123,9 @@ TEST_CASE("scale tells where half is lost and what one dear pixel allows", "[stu
     const StudyPage even = scale_page("even", even_costs(16));
     CHECK(says(even, "p = 16: 256; "));
     CHECK(says(even, "no distribution of whole pixels gains more than 256 times"));
-    CHECK(number(table_named(even, "scale-half").rows[1][1]) == 256);
-    CHECK(number(table_named(even, "scale-half").rows[1][2]) == 256);
-    CHECK(number(table_named(page, "scale-half").rows[1][2]) == 0);
+    CHECK(even.value("scale-half", 1, "50 % or more up to P") == 256);
+    CHECK(even.value("scale-half", 1, "speed-up there") == 256);
+    CHECK(page.value("scale-half", 1, "speed-up there") == 0);
 }
 
 TEST_CASE("scale concludes on 2-D from what keeps up with it", "[study]") {
@@ -135,11 +143,11 @@ TEST_CASE("where an offset cancels out the loads are the column split's", "[stud
         // p = 16: 16 P / 64 is a multiple of 64 from P = 256 on. sqrt(P): 256 / 64 * 16, 1024 / 64 * 32, 2048 / 64 * 45
         // is none. W / sqrt(P) = 2 for P = 1024 and 1.4 for 2048: 32 * 1 is none.
         CHECK(says(page, "So it is with p = 16 for P = 256, 512, 1024, 2048; p = sqrt(P) for P = 256, 1024."));
-        const StudyTable& table = table_named(page, "scale");
-        for (const auto& row : table.rows) {
-            const double pes = number(row[0]);
-            if (pes >= 256) CHECK(number(row[2]) == number(row[5]));
-            if (pes == 256 || pes == 1024) CHECK(number(row[3]) == number(row[5]));
+        const StudyTable& table = page.table("scale");
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            const double pes = table.at(row, "P").number();
+            if (pes >= 256) CHECK(table.at(row, "p = 16") == table.at(row, "column split"));
+            if (pes == 256 || pes == 1024) CHECK(table.at(row, "p = sqrt(P)") == table.at(row, "column split"));
         }
     }
     CHECK(says(scale_page("even", even_costs(17)), "No offset here falls back"));

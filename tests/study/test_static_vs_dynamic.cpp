@@ -2,18 +2,19 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "host/ring/mapping.hpp"
+#include "host/study/arrays.hpp"
 #include "host/study/static_vs_dynamic.hpp"
 #include "host/study/studies.hpp"
 #include "tests/ring/small_mapping.hpp"
-#include "tests/study/page_shape.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {
 
 bool holds(const std::vector<std::string>& findings, const std::string& text) {
-    return std::any_of(findings.begin(), findings.end(),
-                       [&](const std::string& finding) { return finding.find(text) != std::string::npos; });
+    StudyPage page;
+    page.findings = findings;
+    return says(page, text);
 }
 
 CostImage even_image(std::uint32_t size, std::uint64_t cost) {
@@ -24,10 +25,10 @@ CostImage even_image(std::uint32_t size, std::uint64_t cost) {
 SceneOutcomes by_hand(std::array<double, 2> fixed, std::array<double, 2> hybrid) {
     SceneOutcomes scene{"hand", {128, 256}, {}, {}, {1, 1}};
     for (const char* name : {"column split", "cyclic, p = 16", "cyclic, p = sqrt(P)"})
-        scene.strategies.push_back({name, StrategyKind::kStatic, "", {}});
-    scene.strategies.push_back({"dynamic:1", StrategyKind::kDynamic, "", {1, 5, 0}});
-    scene.strategies.push_back({"hybrid:16, free requests", StrategyKind::kHybrid, "", {16, 0, 0.5}});
-    scene.strategies.push_back({"hybrid:16", StrategyKind::kHybrid, "", {16, 5, 0.5}});
+        scene.strategies.push_back({name, StrategyKind::kStatic, {}, {}});
+    scene.strategies.push_back({"dynamic:1", StrategyKind::kDynamic, {}, {1, 5, 0}});
+    scene.strategies.push_back({"hybrid:16, free requests", StrategyKind::kHybrid, {}, {16, 0, 0.5}});
+    scene.strategies.push_back({"hybrid:16", StrategyKind::kHybrid, {}, {16, 5, 0.5}});
     const auto outcomes = [](std::array<double, 2> over) {
         std::vector<Outcome> all;
         for (const double o : over) all.push_back({static_cast<std::uint64_t>(1000 * o), 1 / o, o, 0, false});
@@ -54,19 +55,20 @@ TEST_CASE("strategies are the same by name and kind for every number of PEs, and
                 CAPTURE(size, pes, all[s].name);
                 CHECK(all[s].name == first[s].name);
                 CHECK(all[s].kind == first[s].kind);
-                CHECK_NOTHROW(make_mapping(all[s].mapping, size, size, pes, 0, "cyclic"));
+                CHECK(all[s].mapping.pes == pes);
+                CHECK(all[s].mapping.width == size);
                 CHECK((all[s].kind == StrategyKind::kHybrid) == (all[s].plan.static_share > 0));
                 CHECK((all[s].name.find("free") == std::string::npos) ==
                       (all[s].kind == StrategyKind::kStatic || all[s].plan.overhead == 7));
             }
         }
     }
-    CHECK(strategies(512, 128, 0)[5].mapping == "grid:8x16");
-    CHECK(strategies(512, 12, 0)[5].mapping == "grid:3x4");
-    CHECK(strategies(512, 256, 0)[5].mapping == "grid:16x16");
-    CHECK(strategies(512, 13, 0)[5].mapping == "grid:1x13");
-    CHECK(strategies(512, 256, 0)[2].mapping == "cyclic:16");
-    CHECK(strategies(64, 4096, 0)[2].mapping == "cyclic:0");
+    CHECK(mapping_text(strategies(512, 128, 0)[5].mapping) == "grid:8x16");
+    CHECK(mapping_text(strategies(512, 12, 0)[5].mapping) == "grid:3x4");
+    CHECK(mapping_text(strategies(512, 256, 0)[5].mapping) == "grid:16x16");
+    CHECK(mapping_text(strategies(512, 13, 0)[5].mapping) == "grid:1x13");
+    CHECK(mapping_text(strategies(512, 256, 0)[2].mapping) == "cyclic:16");
+    CHECK(mapping_text(strategies(64, 4096, 0)[2].mapping) == "cyclic:0");
 }
 
 TEST_CASE("outcomes keep the bounds, and static ones are plain sums", "[study]") {
@@ -81,7 +83,7 @@ TEST_CASE("outcomes keep the bounds, and static ones are plain sums", "[study]")
         static_cast<double>(std::accumulate(image.cycles.begin(), image.cycles.end(), std::uint64_t{0}));
     for (const Strategy& strategy : strategies(size, pes, random_below(random, 300))) {
         CAPTURE(strategy.name, size, pes);
-        const Outcome outcome = run_strategy(image, pes, strategy);
+        const Outcome outcome = run_strategy(image, strategy);
         CHECK(outcome.makespan >= lower_bound(image, pes));
         CHECK(outcome.efficiency == Approx(total / (pes * double(outcome.makespan))).epsilon(1e-12));
         CHECK(outcome.over_bound == Approx(double(outcome.makespan) / double(lower_bound(image, pes))).epsilon(1e-12));
@@ -89,10 +91,10 @@ TEST_CASE("outcomes keep the bounds, and static ones are plain sums", "[study]")
             CHECK(outcome.requests > 0);
             continue;
         }
-        const raya_mapping m = make_mapping(strategy.mapping, size, size, pes, 0, "cyclic");
         std::vector<std::uint64_t> loads(pes);
         for (std::uint32_t j = 0; j < size; ++j)
-            for (std::uint32_t x = 0; x < size; ++x) loads[raya_owner(m, j, x)] += image.cycles[j * size + x];
+            for (std::uint32_t x = 0; x < size; ++x)
+                loads[raya_owner(strategy.mapping, j, x)] += image.cycles[j * size + x];
         CHECK(outcome.makespan == *std::max_element(loads.begin(), loads.end()));
         CHECK(outcome.requests == 0);
     }
@@ -100,18 +102,18 @@ TEST_CASE("outcomes keep the bounds, and static ones are plain sums", "[study]")
 
 TEST_CASE("single columns are found where p meets the turns of the PEs that share a slot", "[study]") {
     const CostImage image = even_image(32, 1);
-    const auto single = [&](const std::string& mapping, std::uint32_t pes) {
-        return run_strategy(image, pes, {"", StrategyKind::kStatic, mapping, {}}).single_columns;
+    const auto single = [&](std::uint32_t p, std::uint32_t pes) {
+        return run_strategy(image, {"", StrategyKind::kStatic, cyclic(32, 32, pes, p), {}}).single_columns;
     };
-    CHECK(single("column", 32));
-    CHECK(single("column", 128));
-    CHECK_FALSE(single("column", 16));
-    CHECK_FALSE(single("cyclic:8", 32));
-    CHECK_FALSE(single("cyclic:8", 64));  // 2 PEs a slot, p comes round after 4 rows
-    CHECK(single("cyclic:8", 128));       // 4 and 4
-    CHECK(single("cyclic:8", 256));
-    CHECK_FALSE(single("cyclic:3", 128));
-    CHECK_FALSE(run_strategy(even_image(2, 1), 2, {"", StrategyKind::kStatic, "cyclic:1", {}}).single_columns);
+    CHECK(single(0, 32));
+    CHECK(single(0, 128));
+    CHECK_FALSE(single(0, 16));
+    CHECK_FALSE(single(8, 32));
+    CHECK_FALSE(single(8, 64));  // 2 PEs a slot, p comes round after 4 rows
+    CHECK(single(8, 128));       // 4 and 4
+    CHECK(single(8, 256));
+    CHECK_FALSE(single(3, 128));
+    CHECK_FALSE(run_strategy(even_image(2, 1), {"", StrategyKind::kStatic, cyclic(2, 1), {}}).single_columns);
 }
 
 TEST_CASE("the verdict counts what it says", "[study]") {
@@ -164,13 +166,13 @@ TEST_CASE("the study of static and dynamic distribution is whole", "[study]") {
     Session session(choose_device(""));
     Laboratory lab(session, 32);
     const StudyPage page = study_static_vs_dynamic(lab, {});
-    check_shape(page);
+    check_page(page);
     CHECK(page.settings["pes"] == std::vector<int>{128, 256, 512, 1024});
     CHECK(page.settings["scenes"].size() == 3);
     CHECK(page.plots.size() == 6);
     const auto count = strategies(32, 128, 0).size();
-    CHECK(table_of(page, "static-vs-dynamic").rows.size() == 3 * 4 * count);
-    CHECK(table_of(page, "static-vs-dynamic-1").rows.size() == count + 1);
+    CHECK(page.table("static-vs-dynamic").rows.size() == 3 * 4 * count);
+    CHECK(page.table("static-vs-dynamic-1").rows.size() == count + 1);
     const StudyPage one = study_static_vs_dynamic(lab, {embedded_scene("glass")});
     CHECK(one.settings["scenes"] == std::vector<std::string>{"glass"});
 }

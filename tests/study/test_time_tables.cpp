@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 
 #include "host/machine/budget.hpp"
-#include "host/ring/mapping.hpp"
 #include "host/ring/schedule.hpp"
+#include "host/study/arrays.hpp"
 #include "host/study/laboratory.hpp"
 #include "host/study/spa_times.hpp"
 #include "host/study/studies.hpp"
 #include "tests/reference/reference.hpp"
-#include "tests/study/page_shape.hpp"
+#include "tests/study/study_cases.hpp"
 
 namespace raya {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kSize = 32;
 
 double busiest_ms(const CostImage& image, std::uint32_t offset) {
-    const raya_mapping m = make_mapping("cyclic", image.width, image.height, image.width, offset, "cyclic");
+    const raya_mapping m = cyclic(image.width, offset);
     return spa_ms(static_cast<double>(static_load(image, m).max));
 }
 
@@ -27,13 +27,13 @@ TEST_CASE("Table 2's modelled figures follow from the cost image and the rates",
     Laboratory lab(session, kSize);
     const LabelledScene scene = embedded_scene("spheres");
     const StudyPage page = study_table2(lab, {scene});
-    check_shape(page);
+    check_page(page);
     const Costs& costs = lab.costs(scene, kSize);
     const double one = spa_ms(static_cast<double>(total_cycles(costs.trace)));
     const double array = busiest_ms(costs.trace, 16), factor = fitted_factor(costs.trace);
     const double image = 140. * kSize * kSize / 65'536;
     const double objects = static_cast<double>(costs.job_words) * 140 / 196'608;
-    const auto ours = [&](const std::string& what) { return comparison_of(page, what).ours; };
+    const auto ours = [&](const std::string& what) { return page.comparison(what).ours; };
     CHECK(ours("32 PEs: objects") == Approx(objects).epsilon(1e-12));
     CHECK(ours("32 PEs: compute") == Approx(array).epsilon(1e-12));
     CHECK(ours("32 PEs: compute, fitted") == Approx(factor * array).epsilon(1e-12));
@@ -46,11 +46,12 @@ TEST_CASE("Table 2's modelled figures follow from the cost image and the rates",
     CHECK(ours("speed-up of computing") == Approx(one / array).epsilon(1e-12));
     CHECK(ours("one processor, 64 bits") > 0);
     for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);  // not the paper's size
-    for (const auto& row : table_of(page, "table2").rows) {
+    const StudyTable& table = page.table("table2");
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
         double sum = 0;
-        for (const std::size_t part : {2u, 3u, 4u})
-            if (!std::holds_alternative<std::string>(row[part])) sum += cell_number(row[part]);
-        CHECK(cell_number(row[5]) == Approx(sum).epsilon(1e-12));
+        for (const char* part : {"objects", "compute", "image transfer"})
+            if (const Cell& cell = table.at(row, part); cell != Cell("-")) sum += cell.number();
+        CHECK(table.at(row, "total").number() == Approx(sum).epsilon(1e-12));
     }
 }
 
@@ -59,31 +60,30 @@ TEST_CASE("Table 3's times are tracing, filter and counted rotations", "[study]"
     Laboratory lab(session, kSize);
     const LabelledScene scene = embedded_scene("centre");
     const StudyPage page = study_table3(lab, {});
-    check_shape(page);
+    check_page(page);
     const CostImage& image = lab.costs(scene, kSize).trace;
     const double factor = fitted_factor(image), filter = spa_ms(static_cast<double>(filter_cycles(kSize)));
-    const StudyTable& table = table_of(page, "table3");
-    REQUIRE(table.rows.size() == 3);
+    REQUIRE(page.table("table3").rows.size() == 3);
+    REQUIRE(page.table("table3-offsets").rows.size() == kSize);
     for (std::size_t i = 0; i < 3; ++i) {
         const auto p = static_cast<std::uint32_t>(8 * i);
         const double ring = 2 * (p + 1) * rotation_ms(kSize), tracing = busiest_ms(image, p);
-        const double expected[] = {double(p),
-                                   2. * (p + 1),
-                                   ring,
-                                   filter,
-                                   factor * filter,
-                                   tracing,
-                                   factor * tracing,
-                                   tracing + filter + ring,
-                                   factor * (tracing + filter) + ring};
-        for (std::size_t c = 0; c < 9; ++c) CHECK(cell_number(table.rows[i][c]) == Approx(expected[c]).epsilon(1e-12));
-        CHECK(comparison_of(page, offset_name(p) + ": filtering, fitted").ours ==
+        const std::pair<const char*, double> expected[] = {{"p", p},
+                                                           {"rotations", 2. * (p + 1)},
+                                                           {"communication", ring},
+                                                           {"filter", filter},
+                                                           {"filter, fitted", factor * filter},
+                                                           {"ray tracing", tracing},
+                                                           {"ray tracing, fitted", factor * tracing},
+                                                           {"total", tracing + filter + ring},
+                                                           {"total, fitted", factor * (tracing + filter) + ring}};
+        for (const auto& [label, value] : expected)
+            CHECK(page.value("table3", i, label) == Approx(value).epsilon(1e-12));
+        CHECK(page.comparison(offset_name(p) + ": filtering, fitted").ours ==
               Approx(factor * filter + ring).epsilon(1e-12));
+        // The routes foretell what the renders counted.
+        CHECK(page.value("table3-offsets", p, "total") == Approx(page.value("table3", i, "total")).epsilon(1e-12));
     }
-    const StudyTable& offsets = table_of(page, "table3-offsets");
-    REQUIRE(offsets.rows.size() == kSize);
-    for (std::size_t i = 0; i < 3; ++i)  // the routes foretell what the renders counted
-        CHECK(cell_number(offsets.rows[8 * i][5]) == Approx(cell_number(table.rows[i][7])).epsilon(1e-12));
 }
 
 TEST_CASE("Table 4 has both readings, and the comparisons' cycles in each", "[study]") {
@@ -91,20 +91,20 @@ TEST_CASE("Table 4 has both readings, and the comparisons' cycles in each", "[st
     Laboratory lab(session, kSize);
     const LabelledScene scene = embedded_scene("centre");
     const StudyPage page = study_table4(lab, {});
-    check_shape(page);
+    check_page(page);
     const Costs& costs = lab.costs(scene, kSize, AntialiasMethod::kSupersample);
     const double factor = fitted_factor(costs.trace), compare = spa_ms(static_cast<double>(compare_cycles(kSize)));
     for (const std::uint32_t p : {0u, 16u}) {
         const double alone = compare + busiest_ms(costs.supersample, p), both = alone + busiest_ms(costs.trace, p);
         const double ring = 2 * (std::min(p, kSize - p) + 1) * rotation_ms(kSize);
-        const auto ours = [&](const std::string& what) { return comparison_of(page, offset_name(p) + what).ours; };
+        const auto ours = [&](const std::string& what) { return page.comparison(offset_name(p) + what).ours; };
         CHECK(ours(": communication") == Approx(ring).epsilon(1e-12));
         CHECK(ours(": phase alone") == Approx(alone).epsilon(1e-12));
         CHECK(ours(": phase alone, fitted") == Approx(factor * alone).epsilon(1e-12));
         CHECK(ours(": with first pass") == Approx(both).epsilon(1e-12));
         CHECK(ours(": total, with first pass, fitted") == Approx(factor * both + ring).epsilon(1e-12));
     }
-    CHECK(comparison_of(page, "pixels recomputed").ours ==
+    CHECK(page.comparison("pixels recomputed").ours ==
           Approx(100. * static_cast<double>(costs.recomputed) / (kSize * kSize)).epsilon(1e-12));
 }
 
@@ -112,15 +112,14 @@ TEST_CASE("at the paper's size its figures stand beside ours", "[study]") {
     Session session(choose_device(""));
     Laboratory lab(session, 0);
     const StudyPage page = study_table4(lab, {});
-    CHECK(comparison_of(page, "p = 0: communication").paper == 2);
-    CHECK(comparison_of(page, "p = 16: communication").paper == 12);
-    CHECK(comparison_of(page, "p = 0: phase alone").paper == 739);
-    CHECK(comparison_of(page, "p = 16: total, phase alone, fitted").paper == 419);
-    CHECK(comparison_of(page, "p = 16: communication").ours == Approx(34 * 0.3125).epsilon(1e-12));
+    CHECK(page.comparison("p = 0: communication").paper == 2);
+    CHECK(page.comparison("p = 16: communication").paper == 12);
+    CHECK(page.comparison("p = 0: phase alone").paper == 739);
+    CHECK(page.comparison("p = 16: total, phase alone, fitted").paper == 419);
+    CHECK(page.comparison("p = 16: communication").ours == Approx(34 * 0.3125).epsilon(1e-12));
     // The finding agrees with the figures that it stands on.
     const auto off = [&](const std::string& reading) {
-        const Comparison &first = comparison_of(page, "p = 0: " + reading),
-                         &last = comparison_of(page, "p = 16: " + reading);
+        const Comparison &first = page.comparison("p = 0: " + reading), &last = page.comparison("p = 16: " + reading);
         return std::abs(std::log(first.ours / *first.paper)) + std::abs(std::log(last.ours / *last.paper));
     };
     const std::string finding = page.findings.front(), fitted = finding.substr(0, finding.find("nothing fitted"));

@@ -1,0 +1,39 @@
+#include "host/study/prose.hpp"
+
+#include <sstream>
+#include <stdexcept>
+
+#include "host/embedded.hpp"
+
+namespace raya {
+
+StudyPage page_about(const std::string& name, const nlohmann::ordered_json& settings,
+                     const nlohmann::ordered_json& words) {
+    const auto value_of = [&](const std::string& word) {
+        for (const auto* known : {&words, &settings})
+            if (const auto at = known->find(word); at != known->end())
+                return at->is_string() ? at->get<std::string>() : at->dump();
+        throw std::logic_error(name + ".md: nothing says what {" + word + "} is");
+    };
+    const auto filled = [&](const std::string& text) {
+        std::string result;
+        for (std::size_t at = 0; at < text.size(); ++at) {
+            const std::size_t end = text[at] == '{' ? text.find('}', at) : std::string::npos;
+            result += end == std::string::npos ? text.substr(at, 1) : value_of(text.substr(at + 1, end - at - 1));
+            if (end != std::string::npos) at = end;
+        }
+        return result;
+    };
+    StudyPage page{name, {}, {}, {}, settings};
+    std::istringstream lines(embedded_files().at("host/study/prose/" + name + ".md"));
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("# "))
+            page.title = filled(line.substr(2));
+        else if (line.starts_with("- "))
+            page.method.push_back(filled(line.substr(2)));
+        else if (!line.empty())
+            page.question = filled(line);
+    return page;
+}
+
+}  // namespace raya
