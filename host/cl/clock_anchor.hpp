@@ -6,7 +6,7 @@
 
 namespace raya {
 
-/// Gives the device some tiny commands, and looks at the host's clock before and after each: the time at which a
+/// Sends the device some tiny commands, and looks at the host's clock before and after each: the time at which a
 /// command was queued lies between the two. Of the tries the one that took least is taken. Two clocks may also drift
 /// apart afterwards, which is not seen. The session's profile is cleared. std::logic_error where the session does not
 /// time its commands.

@@ -155,7 +155,7 @@ class Session {
     void fill_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t bytes,
                     const void* value, std::size_t value_bytes);
 
-    /// Gives one command to the queue by `enqueue(cl::Event*)` and notes it; `what` is for the message of a failure.
+    /// Puts one command into the queue by `enqueue(cl::Event*)` and notes it; `what` is for the message of a failure.
     template <class Enqueue>
     void submit(const std::string& what, CommandRecord record, Enqueue&& enqueue);
     CommandRecord finished(const Pending& pending) const;

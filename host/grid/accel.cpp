@@ -53,7 +53,7 @@ std::uint32_t voxel_word(std::size_t row, std::size_t spheres, bool linked) {
     return word_number(row) | word_number(spheres) * RAYA_ONE_ROW | (linked ? RAYA_LINKED : 0);
 }
 
-// The list from `first` on, not empty; gives its voxel word. Spheres come first, as their numbers do.
+// The list from `first` on, not empty; returns its voxel word. Spheres come first, as their numbers do.
 std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words, const raya_objects& objects,
                        std::span<const std::uint32_t> list) {
     const auto end_of_spheres = std::lower_bound(list.begin(), list.end(), objects.spheres);

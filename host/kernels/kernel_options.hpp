@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// The tunables of kernels/ (each RAYA_* macro is explained where the kernels give its default).
+/// The tunables of kernels/ (each RAYA_* macro is explained where the kernels define its default).
 struct KernelOptions {
     std::uint32_t lanes = 1;       // V
     std::uint32_t group_size = 1;  // L

@@ -93,7 +93,7 @@ class NodePacker {
         return words;
     }
 
-    // Appends the node's words; gives how many objects it holds.
+    // Appends the node's words; returns the number of objects that it holds.
     std::uint64_t append(std::uint32_t node, Words& to) {
         to_ = &to;
         start_ = to.size();

@@ -1,7 +1,8 @@
 // operations: how long each operation of the number layer takes. A benchmark, it computes nothing of use.
 //
-// Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that what is measured is how many the
-// device can do, not how long one takes. The results are stored so that no compiler leaves the work out.
+// Every work-item repeats one operation `rounds` times on eight independent chains of V lanes, so that
+// what is measured is how many the device can do, not how long one takes. The results are stored so that
+// no compiler leaves the work out.
 #include "number.clh"
 #include "kernels/shared/chains.h"
 

@@ -1,11 +1,12 @@
-// Where to supersample: a pixel is marked where one of its four neighbours differs from it by the threshold or more in red,
-// green or blue, each clamped to 0..1 (Kohata & Ito 1993, anti-aliasing). The difference is a number of the machine, rounded once.
+// Where to supersample: a pixel is marked where one of its four neighbours differs from it by the threshold or
+// more in red, green or blue, each clamped to 0..1 (Kohata & Ito 1993, anti-aliasing). The difference is a
+// number of the machine, rounded once.
 //
-// The host rotates the blocks of pixels as for the filter, and launches mark_contrasts whenever a block has arrived that holds
-// neighbours.
+// The host rotates the blocks of pixels as for the filter, and launches mark_contrasts whenever a block has
+// arrived that holds neighbours.
 //
-// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has arrived
-// in its memory, and nothing else.
+// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has
+// arrived in its memory, and nothing else.
 #include "kernels/ring/arrived.clh"
 
 static inline real clamped(real a) { return choose(a > 1.0f, num_all(1.0f), num_max(a, num_all(0.0f))); }
@@ -28,7 +29,8 @@ void mark_contrasts(__global const uint* restrict broadcast,  // the job's words
                     __global uchar* restrict marks)           // [PE][capacity]: set to 1 where the pixel differs
 {
     const uint pe = get_group_id(0);
-    const arrived_block block = open_arrived(((__global const raya_job*)broadcast)->mapping, pe, distance, side, begin, band, arrived);
+    const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
+    const arrived_block block = open_arrived(m, pe, distance, side, begin, band, arrived);
     __global const float* own = pixels + (size_t)pe * capacity * 3;
     __global uchar* mine = marks + (size_t)pe * capacity;
     const uint end = min(capacity, raya_share_size(block.share));

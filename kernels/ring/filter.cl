@@ -4,11 +4,11 @@
 //     columns:  sum = (own + above) + below         of those sums
 //     pixel = sum / 9                               at the border, by as many pixels as there are: 6, 4, ...
 //
-// Sums and quotient are the machine's own numbers. The host copies `own` to `sum`, rotates the blocks, and launches add_neighbours
-// whenever a block has arrived that holds neighbours; take_means comes last.
+// Sums and quotient are the machine's own numbers. The host copies `own` to `sum`, rotates the blocks, and launches
+// add_neighbours whenever a block has arrived that holds neighbours; take_means comes last.
 //
-// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has arrived
-// in its memory, and nothing else.
+// One work-group is one PE; its work-items take the PE's pixels in turn. A PE reads its own block, the block that has
+// arrived in its memory, and nothing else.
 #include "kernels/ring/arrived.clh"
 
 // sum += neighbour, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
@@ -23,7 +23,8 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
                     __global float* restrict sums)            // [PE][capacity][3]: added to
 {
     const uint pe = get_group_id(0);
-    const arrived_block block = open_arrived(((__global const raya_job*)broadcast)->mapping, pe, distance, side, begin, band, arrived);
+    const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
+    const arrived_block block = open_arrived(m, pe, distance, side, begin, band, arrived);
     __global float* mine = sums + (size_t)pe * capacity * 3;
     const uint end = min(capacity, raya_share_size(block.share));
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {

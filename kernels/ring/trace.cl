@@ -1,7 +1,9 @@
-// trace: every PE traces points of its own pixels, without communication (Kohata & Ito 1993, ray tracing, step 2, and supersampling).
+// trace: every PE traces points of its own pixels, without communication (Kohata & Ito 1993, ray
+// tracing, step 2, and supersampling).
 //
-// One work-group is one PE. It first takes the broadcast words into its own memory; then each of its work-items walks V ray
-// trees at once, one in each lane, and a lane takes the pixel's next point, or the PE's next pixel, as soon as its last walk is done:
+// One work-group is one PE. It first takes the broadcast words into its own memory; then each of its work-items
+// walks V ray trees at once, one in each lane, and a lane takes the pixel's next point, or the PE's next pixel, as
+// soon as its last walk is done:
 //
 //     copy the job's words to local memory, barrier
 //     while a lane has a pixel:
@@ -12,8 +14,8 @@
 //         refracted ray aside, and add each light that a shadow ray reaches                (shading/)
 //         go on with the reflected ray, else with the deepest waiting refracted one, else without a walk
 //
-// A point's colour is summed in the order of its own ray tree, a pixel's in the order of its points, so the bits do not depend on V,
-// group size, mapping or device.
+// A point's colour is summed in the order of its own ray tree, a pixel's in the order of its points, so the bits do
+// not depend on V, group size, mapping or device.
 // Limits: a PE's share < 2^32 pixels; the cost of one pixel < 2^64 cycles; its events < 2^32 each.
 #include "kernels/ring/pixel_store.clh"
 #include "kernels/shading/camera.clh"
@@ -59,7 +61,8 @@ static inline void next_points(words scene, tree* t, pixel_store* store, tree_pi
         column.lane[lane] = pixel.column + raya_point_right(store->points, p->point.lane[lane]);
         fresh.lane[lane] = RAYA_TRUE;
     }
-    for (uint e = 0; e < RAYA_EVENTS; ++e) t->events[e].all = choose_index(newcomer.truth, (index)(0), t->events[e].all);
+    for (uint e = 0; e < RAYA_EVENTS; ++e)
+        t->events[e].all = choose_index(newcomer.truth, (index)(0), t->events[e].all);
     if (mask_any(fresh.truth)) start_walk(scene, t, fresh.truth, row.all, column.all);
 }
 
@@ -103,13 +106,16 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            const uint begin,                         // pixels `begin` to `end` - 1 of each share are traced now;
            const uint end,                           // they lie in the block
            const uint points,                        // RAYA_POINTS_*: which points of them
-           __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; unused for RAYA_POINTS_OWN
-           __local uint* memory,                     // the number of the PE's next pixel, then, where RAYA_WORDS_LOCAL is 1, word_count words
-           __global float* restrict pixels,          // [PE][capacity][3]: linear red, green, blue; read where points are new
-           __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of each pixel that was traced now
+           __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; of no use
+                                                     // for RAYA_POINTS_OWN
+           __local uint* memory,                     // the number of the PE's next pixel, then, where
+                                                     // RAYA_WORDS_LOCAL is 1, word_count words
+           __global float* restrict pixels,          // [PE][capacity][3]: linear rgb; read where points are new
+           __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels traced now
            __global ulong* restrict events)          // [PE][work-item][RAYA_EVENTS], added to
 {
-    // An argument, not a __local variable: with PoCL 3.1 pixels were lost where a function that took its address was not inlined.
+    // An argument, not a __local variable: with PoCL 3.1 pixels were lost where a function that
+    // took its address was not inlined.
     volatile __local uint* next = memory;
     const uint pe = get_group_id(0), item = get_local_id(0);
     if (item == 0) *next = begin;

@@ -1,6 +1,7 @@
 // The scene's box, cut into A x B x C equal voxels (Fujimoto, Tanaka & Iwata 1986; Yoshitani & Yamazaki, method).
 //
-// Planes between voxels are fp32 numbers that host and kernels compute alike. Numbers of voxels run along x first, then y, then z.
+// Planes between voxels are fp32 numbers that host and kernels compute alike. Numbers of voxels run
+// along x first, then y, then z.
 #ifndef RAYA_SHARED_GRID_H
 #define RAYA_SHARED_GRID_H
 #include "kernels/shared/portable.h"
@@ -9,19 +10,20 @@ typedef struct {
     float low[3];           // the corner of the box with the lowest coordinates, scene units
     float cell[3];          // sides of a voxel, > 0
     raya_u32 divisions[3];  // A, B, C
-    // Largest coordinate of a ray's origin for which a hit is sure to lie in a voxel that its object is registered in; a ray
-    // from farther away has to be tested against all objects (host/grid/partition.hpp).
+    // Largest coordinate of a ray's origin for which a hit is sure to lie in a voxel that its object is registered in;
+    // a ray from farther away has to be tested against all objects (host/grid/partition.hpp).
     float reach;
 } raya_grid;
 RAYA_SHARED_SIZE(raya_grid, 4 * 10);
 
 #define RAYA_NO_VOXEL 0xffffffffu
 
-// The grid in the words of a job, at raya_job.grid_at. After this header: the numbers of the objects held apart; a word for each voxel;
-// the rows of all lists, four words each, list after list; the number of each row's object. "at" words are distances from the job's first word.
+// The grid in the words of a job, at raya_job.grid_at. After this header: the numbers of the objects held apart; a word
+// for each voxel; the rows of all lists, four words each, list after list; the number of each row's object. "at" words
+// are distances from the job's first word.
 typedef struct {
     raya_grid grid;
-    raya_u32 apart;      // how many finite objects are in no list, since every ray is tested against them, as against planes
+    raya_u32 apart;      // finite objects that are in no list, as every ray is tested against them, as against planes
     raya_u32 apart_at;   // their numbers, ascending
     raya_u32 voxels_at;  // voxel words
     raya_u32 rows_at;
@@ -29,17 +31,17 @@ typedef struct {
 } raya_grid_words;
 RAYA_SHARED_SIZE(raya_grid_words, 4 * (10 + 5));
 
-// A voxel word says what is to be gone through: so many spheres (RAYA_ROWS_LEFT) from the row of that number (RAYA_ROW_NUMBER) on, and then,
-// where RAYA_LINKED is set, the link in the row behind them. 0: nothing.
+// A voxel word says what is to be gone through: so many spheres (RAYA_ROWS_LEFT) from the row of that number
+// (RAYA_ROW_NUMBER) on, and then, where RAYA_LINKED is set, the link in the row behind them. 0: nothing.
 #define RAYA_ROW_NUMBER 0x03ffffffu
 #define RAYA_ONE_ROW 0x04000000u
 #define RAYA_ROWS_LEFT 0x7c000000u
 #define RAYA_MOST_ROWS 31u  // in one voxel word
 #define RAYA_LINKED 0x80000000u
 
-// Row 0 belongs to no list. Words of a row: a sphere's are the first four of its object, all that a hit needs. A link's: the voxel word for what
-// comes next, 0 at the end; its number is that of an object that is no sphere, or RAYA_NO_OBJECT_HERE: a list of more than RAYA_MOST_ROWS spheres
-// goes on.
+// Row 0 belongs to no list. Words of a row: a sphere's are the first four of its object, all that a hit needs. A
+// link's: the voxel word for what comes next, 0 at the end; its number is that of an object that is no sphere, or
+// RAYA_NO_OBJECT_HERE: a list of more than RAYA_MOST_ROWS spheres goes on.
 enum { RAYA_ROW_NEXT = 0, RAYA_ROW_WORDS = 4 };
 #define RAYA_NO_OBJECT_HERE 0xffffffffu
 

@@ -1,9 +1,10 @@
-// The job: all that the host broadcasts to every PE, as 32-bit words. A header, then the scene in sections of fixed strides:
+// The job: all that the host broadcasts to every PE, as 32-bit words. A header, then the
+// scene in sections of fixed strides:
 //
-//   raya_job | surfaces | lights | spheres | planes | cones | polygons | each polygon's outline and, of a patch, normals
+//   raya_job | surfaces | lights | spheres | planes | cones | polygons | outline of each polygon, normals of a patch
 //
-// Every word holds a float (as its bits) or an unsigned integer. Objects are numbered through spheres, planes, polygons and
-// cones. "at" words are distances from the job's first word.
+// Every word holds a float (as its bits) or an unsigned integer. Objects are numbered through spheres, planes, polygons
+// and cones. "at" words are distances from the job's first word.
 #ifndef RAYA_SHARED_JOB_H
 #define RAYA_SHARED_JOB_H
 #include "kernels/shared/events.h"
@@ -48,7 +49,8 @@ enum {  // words of a surface
 
 enum { RAYA_LIGHT_POSITION = 0, RAYA_LIGHT_COLOUR = 3, RAYA_LIGHT_WORDS = 6 };
 
-// Every object starts alike: three words of place (centre, normal or base), one of size, and where its surface's words start.
+// Every object starts alike: three words of place (centre, normal or base), one of size, and
+// where its surface's words start.
 enum { RAYA_OBJECT_PLACE = 0, RAYA_OBJECT_SIZE = 3, RAYA_OBJECT_SURFACE_AT = 4, RAYA_OBJECT_WORDS = 5 };
 
 enum {  // words of a sphere
@@ -71,8 +73,8 @@ enum {  // words of a polygon: those of its plane, and
     RAYA_POLYGON_WORDS
 };
 
-// An edge of an outline in the coordinates (u, v) that follow the dropped one: (1, 2), (2, 0) or (0, 1). LOW and HIGH are
-// its ends' v as they come round the outline, u = U + (v - LOW) SLOPE on it.
+// An edge of an outline in the coordinates (u, v) that follow the dropped one: (1, 2), (2, 0) or (0, 1). LOW and HIGH
+// are its ends' v as they come round the outline, u = U + (v - LOW) SLOPE on it.
 enum { RAYA_EDGE_U = 0, RAYA_EDGE_LOW = 1, RAYA_EDGE_HIGH = 2, RAYA_EDGE_SLOPE = 3, RAYA_EDGE_WORDS = 4 };
 
 // Shading normal of a patch: N0 + (u - u0) NU + (v - v0) NV, unnormalised.

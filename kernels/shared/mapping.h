@@ -1,24 +1,26 @@
-// The mapping: which PE owns which pixel, in closed form both ways. Read by host and kernels; nobody else knows the formulas.
+// The mapping: which PE owns which pixel, in closed form both ways. Read by host and kernels;
+// nobody else knows the formulas.
 //
-// The slot mappings. Pixel (row j, column x) lies in slot c = (x - j p) mod W of the sheared image: the cyclic mapping with
-// offset p (Kohata & Ito 1993, cyclic mapping; p = 0 is their column split). The fold gives slots to PEs where P != W:
+// The slot mappings. Pixel (row j, column x) lies in slot c = (x - j p) mod W of the sheared image: the
+// cyclic mapping with offset p (Kohata & Ito 1993, cyclic mapping; p = 0 is their column split). The fold
+// maps slots to PEs where P != W:
 //
 //   RAYA_FOLD_CYCLIC   P <= W   PE i owns the slots i, i + P, i + 2P, ...
 //                      P >  W   slot c has the PEs c, c + W, c + 2W, ..., its rows go to them in turn
 //   RAYA_FOLD_BLOCK    P <= W   PE i owns the slots c with floor(c P / W) = i
-//                      P >  W   slot c has the PEs from floor(c P / W) to floor((c + 1) P / W) - 1, each takes a run of rows
+//                      P >  W   slot c has the PEs floor(c P / W) to floor((c + 1) P / W) - 1, each takes a run of rows
 //
 // The others, by the PE that owns pixel (j, x):
 //
 //   RAYA_ROWS     j mod P: scan lines in turn
 //   RAYA_BLOCKS   floor(j P / H): contiguous scan lines
 //   RAYA_GRID     (j mod A) B + (x mod B), P = A B: an array of A rows of B PEs (CAP 16 x 16, Pixel Machine 8 x 8)
-//   RAYA_TILES    t mod P: tiles of w x h pixels in turn, tile t = (j div h)(W div w) + (x div w); w divides W, h divides H
+//   RAYA_TILES    t mod P: tiles of w x h pixels in turn, t = (j div h)(W div w) + (x div w); w divides W, h divides H
 //   RAYA_RANDOM   (scrambled number j W + x) mod P: see shared/scramble.h; no two shares differ by more than a pixel
 //
-// Every share is a lattice of slots (or columns) and rows, a list of tiles, or a list of scrambled numbers, so pixel k of PE i
-// has a closed form as well. A PE may own nothing: P > H with rows, more PEs than tiles.
-// Legal: 1 <= W, H <= 16384, 1 <= P <= W H, 0 <= p < W. Then j p < 2^28 and c P < 2^42, which is why 64 bits appear.
+// Every share is a lattice of slots (or columns) and rows, a list of tiles, or a list of scrambled numbers, so pixel k
+// of PE i has a closed form as well. A PE may own nothing: P > H with rows, more PEs than tiles. Legal: 1 <= W, H <=
+// 16384, 1 <= P <= W H, 0 <= p < W. Then j p < 2^28 and c P < 2^42, which is why 64 bits appear.
 #ifndef RAYA_SHARED_MAPPING_H
 #define RAYA_SHARED_MAPPING_H
 #include "kernels/shared/portable.h"
@@ -42,8 +44,8 @@ typedef struct {
 } raya_mapping;
 RAYA_SHARED_SIZE(raya_mapping, 20);
 
-// What one PE owns. Tiles and random: pe and size tell all. The others: slots first_slot + m slot_step (m < slots) crossed with
-// the rows first_row, first_row + row_step, ...
+// What one PE owns. Tiles and random: pe and size tell all. The others: slots first_slot + m slot_step (m < slots)
+// crossed with the rows first_row, first_row + row_step, ...
 typedef struct {
     raya_u32 pe, size;  // size: pixels
     raya_u32 first_slot, slot_step, slots;
@@ -131,7 +133,8 @@ RAYA_SHARED_FUNCTION raya_share raya_slot_share(raya_mapping m, raya_u32 pe) {
 RAYA_SHARED_FUNCTION raya_share raya_share_of(raya_mapping m, raya_u32 pe) {
     if (raya_has_slots(m)) return raya_slot_share(m, pe);
     raya_share s = {pe, 0, 0, 1, m.width, pe, m.pes};  // as of RAYA_ROWS
-    const raya_u32 first = raya_first_of(m.parameter), second = raya_second_of(m.parameter), pixels = m.width * m.height;
+    const raya_u32 first = raya_first_of(m.parameter), second = raya_second_of(m.parameter);
+    const raya_u32 pixels = m.width * m.height;
     if (m.kind == RAYA_ROWS) s.size = raya_steps_below(pe, m.pes, m.height) * m.width;
     if (m.kind == RAYA_BLOCKS) {
         s.first_row = raya_ceil_ratio(pe, m.height, m.pes);

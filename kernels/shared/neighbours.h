@@ -22,11 +22,12 @@ RAYA_SHARED_FUNCTION raya_pixel raya_neighbour(raya_pixel pixel, raya_u32 side) 
     return pixel;
 }
 
-// Which points of a pixel are traced: its own, or four new ones half a pixel away from it (Kohata & Ito 1993, supersampling).
+// Which points of a pixel are traced: its own, or four new ones half a pixel away from it
+// (Kohata & Ito 1993, supersampling).
 enum {
     RAYA_POINTS_OWN,       // one: the sample point of kernels/README.md, Camera
     RAYA_POINTS_AXES,      // four: to the left, right, above, below
-    RAYA_POINTS_DIAGONALS  // four: to the upper left, upper right, lower left, lower right, half a pixel along both axes
+    RAYA_POINTS_DIAGONALS  // four: to the upper left, upper right, lower left, lower right; half a pixel on both axes
 };
 
 #define RAYA_NEW_POINTS 4u

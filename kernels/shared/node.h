@@ -1,10 +1,12 @@
-// The memory of a torus node: all that it holds of the scene, as 32-bit words. A header, then sections of fixed strides:
+// The memory of a torus node: all that it holds of the scene, as 32-bit words. A header,
+// then sections of fixed strides:
 //
-//   raya_node | surfaces | lights | raya_voxel_memory of each of its voxels | planes | of each voxel: spheres, cones, polygons with their
-//   outlines, and the numbers that its objects have in the whole scene
+//   raya_node | surfaces | lights | raya_voxel_memory of each of its voxels | planes | of each voxel: spheres, cones,
+//   polygons with their outlines, and the numbers that its objects have in the whole scene
 //
-// "at" words are distances from the node's first word. Of the surfaces there are those that its objects have. Every voxel has its own copy
-// of an object that touches it; planes are infinite, so all voxels share one copy of all of them.
+// "at" words are distances from the node's first word. Of the surfaces there are those that its objects
+// have. Every voxel has its own copy of an object that touches it; planes are infinite, so all voxels
+// share one copy of all of them.
 #ifndef RAYA_SHARED_NODE_H
 #define RAYA_SHARED_NODE_H
 #include "kernels/shared/grid.h"
@@ -17,13 +19,14 @@ typedef struct {
     raya_grid grid;
     raya_u32 number;     // of the node
     raya_u32 voxels;     // that it holds
-    raya_u32 window[4];  // rows from, to, columns from, to (the last not included) of the pixels whose rays may enter the box at its voxels
+    raya_u32 window[4];  // of the pixels whose rays may enter the box at its voxels: rows from, to, columns from, to,
+                         // the last not included
     raya_u32 voxels_at;  // their raya_voxel_memory, in the order of their numbers in the node
 } raya_node;
 RAYA_SHARED_SIZE(raya_node, sizeof(raya_job) + 4 * (7 + 10 + 7));
 
-// What a voxel holds. Numbers of its objects in the whole scene lie at numbers_at: spheres, then polygons, then cones. A plane's
-// number is the scene's count of spheres + its own among the planes.
+// What a voxel holds. Numbers of its objects in the whole scene lie at numbers_at: spheres, then polygons, then cones.
+// A plane's number is the scene's count of spheres + its own among the planes.
 typedef struct {
     raya_objects objects;
     raya_u32 numbers_at;

@@ -26,7 +26,8 @@ RAYA_SHARED_FUNCTION raya_u32 raya_scramble_bits(raya_u32 count) {
 // One round of the network on `bits` bits; its own inverse.
 RAYA_SHARED_FUNCTION raya_u32 raya_scramble_round(raya_u32 number, raya_u32 bits, raya_u32 seed, raya_u32 round) {
     const raya_u32 low = bits - bits / 2, low_mask = (1u << low) - 1, high_mask = (1u << bits / 2) - 1;
-    const raya_u32 key = raya_mix(seed + (round + 1) * 0x9e3779b9u);  // mixed, so that near seeds have nothing in common
+    // Mixed, so that near seeds have nothing in common.
+    const raya_u32 key = raya_mix(seed + (round + 1) * 0x9e3779b9u);
     if (round & 1u) return number ^ (raya_mix(key ^ number >> low) & low_mask);
     return number ^ (raya_mix(key ^ (number & low_mask)) & high_mask) << low;
 }

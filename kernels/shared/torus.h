@@ -1,14 +1,16 @@
 // Which nodes there are, which voxels each holds, and how they are joined.
 //
-// Nodes (i, j, k) hold the voxels (x, y, z) with x mod I = i, y mod J = j, z mod K = k: with as many voxels as nodes one each, with
-// more laid out cyclically. A node's number is its place on the torus, counted along the torus's first side, then the second, then the third.
+// Nodes (i, j, k) hold the voxels (x, y, z) with x mod I = i, y mod J = j, z mod K = k: with as many voxels as nodes
+// one each, with more laid out cyclically. A node's number is its place on the torus, counted along the torus's first
+// side, then the second, then the third.
 //
 //   3-D torus  sides I x J x K, six links a node, node (i, j, k) at (i, j, k)
 //   2-D torus  sides (I C) x (J K / C), four links a node, C = slabs of equal k beside one another, a divisor of K:
-//              node (i, j, k) at (i + I (k mod C), j + J (k div C)). The T805 has four links; 4 x 4 x 4 nodes are an 8 x 8 torus.
+//              node (i, j, k) at (i + I (k mod C), j + J (k div C)). The T805 has four links; 4 x 4 x 4 nodes are an
+//              8 x 8 torus.
 //
-// Rays go along the first side until they are in the right column, then along the second, then the third, the shorter way
-// round each; of two ways of equal length, the one towards higher numbers. Returns go by raya_home_link.
+// Rays go along the first side until they are in the right column, then along the second, then the third, the shorter
+// way round each; of two ways of equal length, the one towards higher numbers. Returns go by raya_home_link.
 #ifndef RAYA_SHARED_TORUS_H
 #define RAYA_SHARED_TORUS_H
 #include "kernels/shared/grid.h"
@@ -100,10 +102,12 @@ RAYA_SHARED_FUNCTION raya_u32 raya_local_voxel(raya_torus t, raya_grid g, raya_u
 RAYA_SHARED_FUNCTION raya_u32 raya_voxel_of_node(raya_torus t, raya_grid g, raya_u32 node, raya_u32 within) {
     const raya_place n = raya_node_place(t, node);
     const raya_place l = raya_place_of(within, raya_node_voxels_along(t, g, n, 0), raya_node_voxels_along(t, g, n, 1));
-    return raya_voxel(g, n.at[0] + t.nodes[0] * l.at[0], n.at[1] + t.nodes[1] * l.at[1], n.at[2] + t.nodes[2] * l.at[2]);
+    return raya_voxel(g, n.at[0] + t.nodes[0] * l.at[0], n.at[1] + t.nodes[1] * l.at[1],
+                      n.at[2] + t.nodes[2] * l.at[2]);
 }
 
-// Steps from one place along a side of the torus to another by the shorter way; `up` is set where that leads to higher numbers.
+// Steps from one place along a side of the torus to another by the shorter way; `up` is set
+// where that leads to higher numbers.
 RAYA_SHARED_FUNCTION raya_u32 raya_side_distance(raya_u32 from, raya_u32 to, raya_u32 side, int* up) {
     const raya_u32 higher = to >= from ? to - from : to + side - from;
     *up = higher <= side - higher;
@@ -120,8 +124,8 @@ RAYA_SHARED_FUNCTION raya_u32 raya_next_link(raya_torus t, raya_u32 from, raya_u
     return RAYA_NO_LINK;
 }
 
-// The link by which a node sends returns towards the root: as raya_next_link, but nodes take the sides that they are away from the root in
-// different orders, so that all links of the root carry their part. RAYA_NO_LINK in the root.
+// The link by which a node sends returns towards the root: as raya_next_link, but nodes take the sides that they are
+// away from the root in different orders, so that all links of the root carry their part. RAYA_NO_LINK in the root.
 RAYA_SHARED_FUNCTION raya_u32 raya_home_link(raya_torus t, raya_u32 node) {
     const raya_place a = raya_torus_place(t, node), b = raya_torus_place(t, RAYA_ROOT);
     const raya_u32 first = a.at[0] + a.at[1] + a.at[2];

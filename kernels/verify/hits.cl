@@ -1,6 +1,6 @@
-// The nearest hits of given rays, by testing all objects and by the walk through the grid. A work-group is one work-item, which takes the
-// next V rays; `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V. Built with RAYA_ACCEL=1, the job
-// has a grid, its words lie in global memory.
+// The nearest hits of given rays, by testing all objects and by the walk through the grid. A work-group is one
+// work-item, which takes the next V rays; `rays` holds origin, direction and limit of each: [ray][7]. The numbers of
+// rays are multiples of V. Built with RAYA_ACCEL=1, the job has a grid, its words lie in global memory.
 #include "kernels/shading/search.clh"
 #include "kernels/verify/rows.clh"
 

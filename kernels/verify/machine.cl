@@ -1,5 +1,5 @@
-// What kernels compute of the machines beside numbers: owners of pixels, ways through the torus, words in local memory. The host computes the
-// same with the same headers; all of it is exact.
+// What kernels compute of the machines beside numbers: owners of pixels, ways through the torus, words in local memory.
+// The host computes the same with the same headers; all of it is exact.
 #include "kernels/shared/mapping.h"
 #include "kernels/shared/neighbours.h"
 #include "kernels/shared/torus.h"
@@ -12,8 +12,9 @@
 __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]
                           __global const raya_pixel* restrict pixels,      // [case]
                           const uint cases,
-                          __global uint* restrict results)                 // [case][6]: owner, size of its share, number of the pixel in it, the
-                                                                           // pixel of that number (row, column), neighbours (a bit for each side)
+                          __global uint* restrict results)                 // [case][6]: owner, size of its share, number in it,
+                                                                           // the pixel of that number (row, column),
+                                                                           // neighbours (a bit for each side)
 {
     const uint i = get_global_id(0);
     if (i >= cases) return;
@@ -34,7 +35,8 @@ __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [c
     to[5] = sides;
 }
 
-// The first link of a packet's way and of a return's, and where the links of its node lead. A work-item takes one pair of nodes.
+// The first link of a packet's way and of a return's, and where the links of its node lead. A
+// work-item takes one pair of nodes.
 __kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
                         __global const uint* restrict nodes,          // [case][2]: where the packet is, where it goes
                         const uint cases,
@@ -50,8 +52,9 @@ __kernel void find_ways(__global const raya_torus* restrict toruses,  // [case]
     for (uint link = 0; link < RAYA_LINKS; ++link) to[2 + link] = raya_link_end(t, node, link);
 }
 
-// Every work-group takes its words into local memory, then takes them out again the other way round, several times, with a number that its
-// work-items have drawn from a counter: what the trace kernel asks of local memory, barriers and atomics.
+// Every work-group takes its words into local memory, then takes them out again the other way round,
+// several times, with a number that its work-items have drawn from a counter: what the trace kernel asks of
+// local memory, barriers and atomics.
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void turn_round(__global const uint* restrict from,  // [group][words]
                 const uint words,

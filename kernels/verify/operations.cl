@@ -1,13 +1,14 @@
-// operations: every operation of the number layer on rows of operands whose answers are known (host/verify/known_answers.csv).
+// operations: every operation of the number layer on rows of operands whose answers are known
+// (host/verify/known_answers.csv).
 //
-// A work-group is one work-item, which takes the next V rows; their number is a multiple of V. Everything lies column by column:
-// operand k of row i at k * rows + i, the bits of result k of row i likewise. Every operation is done on every row; the host looks at the one that the
-// row is for.
+// A work-group is one work-item, which takes the next V rows; their number is a multiple of V. Everything lies column
+// by column: operand k of row i at k * rows + i, the bits of result k of row i likewise. Every operation is done on
+// every row; the host looks at the one that the row is for.
 #include "kernels/number/power.clh"
 #include "kernels/verify/rows.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; of from_index, a is the bits of a whole number
+void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; from_index reads a's bits
                 const uint rows,
                 __global uint* restrict results)          // [12][rows], in the order below
 {

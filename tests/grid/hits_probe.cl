@@ -1,5 +1,5 @@
-// Hits of one object alone. A work-group is one work-item, which takes the next V rays; `rays` holds origin, direction and limit of each:
-// [ray][7]. Sixteen rays in a row are for the same object; their number is a multiple of 16.
+// Hits of one object alone. A work-group is one work-item, which takes the next V rays; `rays` holds origin, direction
+// and limit of each: [ray][7]. Sixteen rays in a row are for the same object; their number is a multiple of 16.
 #include "kernels/geometry/scene.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
@@ -12,7 +12,8 @@ void hits_of_one(__global const uint* restrict job,
     __global const float* from = rays + first * 7;
     const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
     const objects_words all = &((job_words)job)->objects;
-    const uint object = objects[first / 16], first_polygon = all->spheres + all->planes, first_cone = first_polygon + all->polygons;
+    const uint object = objects[first / 16];
+    const uint first_polygon = all->spheres + all->planes, first_cone = first_polygon + all->polygons;
     hit h = {r.limit, (index)(RAYA_NO_OBJECT)};
     if (object < all->spheres)
         h = hit_spheres(h, r, job + all->spheres_at + object * RAYA_SPHERE_WORDS, 1, object);

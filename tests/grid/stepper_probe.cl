@@ -1,4 +1,5 @@
-// The walk through a grid as the ring's lanes take it (kernels/grid/stepper.clh), voxel by voxel; buffers as in walk_probe.cl.
+// The walk through a grid as the ring's lanes take it (kernels/grid/stepper.clh), voxel by
+// voxel; buffers as in walk_probe.cl.
 #include "kernels/grid/stepper.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))

@@ -1,5 +1,5 @@
-// The walk through a grid (kernels/grid/walk.clh), voxel by voxel. A work-group is one work-item, which takes the next V rays; `rays` holds
-// origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
+// The walk through a grid (kernels/grid/walk.clh), voxel by voxel. A work-group is one work-item, which takes the next
+// V rays; `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
 #include "kernels/grid/walk.clh"
 
 static inline ray load_ray(__global const float* rays, uint first) {
@@ -59,7 +59,7 @@ void resumes(__global const raya_grid* restrict grid,
 // Normalised directions, and those reflected once at normalised normals.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void made_directions(__global const raya_grid* restrict grid,
-                     __global const float* restrict arms,  // [ray][6]: two vectors: towards the direction and towards the normal
+                     __global const float* restrict arms,  // [ray][6]: towards the direction, towards the normal
                      __global uint* restrict wide)         // [ray][2]: 0 or 1
 {
     const uint first = get_group_id(0) * RAYA_LANES;

@@ -1,5 +1,5 @@
-// The number layer by itself. A work-group is one work-item, which takes the next V rows of numbers; there are a multiple
-// of V of them.
+// The number layer by itself. A work-group is one work-item, which takes the next V rows of numbers;
+// there are a multiple of V of them.
 #include "kernels/number/power.clh"
 
 static inline void store_bits(__global uint* to, uint stride, real value) {

@@ -1,18 +1,23 @@
-// The number layer's operations on rows of operands. A work-group is one work-item, which takes the next V rows; their number is a
-// multiple of V. Everything lies column by column: operand k of row i at k * rows + i, bits of result k of row i likewise.
+// The number layer's operations on rows of operands. A work-group is one work-item, which takes the next V
+// rows; their number is a multiple of V. Everything lies column by column: operand k of row i at k * rows + i,
+// bits of result k of row i likewise.
 //
-// RAYA_TEST_DEVICE_ERROR stands in for a device whose division errs by up to 2 units in the last place and whose square root by up to 3.
+// RAYA_TEST_DEVICE_ERROR stands in for a device whose division errs by up to 2 units in the last place
+// and whose square root by up to 3.
 #include "kernels/number/lanes.clh"
 
 #ifdef RAYA_TEST_DEVICE_ERROR
-// A number up to `reach` units away from z, by the operands' bits. Only where z is certainly normal: the layer refines no others.
+// A number up to `reach` units away from z, by the operands' bits. Only where z is certainly
+// normal: the layer refines no others.
 static inline real err_by(real z, mask bits, int reach) {
     const count mixed = as_lanes_uint(bits) * 2654435761u;
     const mask step = as_lanes_int((mixed >> 16) % (count)(2 * reach + 1)) - reach;
     const mask normal = (fabs(z) > 0x1p-126f) & (fabs(z) < INFINITY);
     return choose(normal, as_lanes_real(as_lanes_int(z) + step), z);
 }
-static inline real erring_quotient(real a, real b) { return err_by(a / b, as_lanes_int(a) ^ (as_lanes_int(b) >> 1), 2); }
+static inline real erring_quotient(real a, real b) {
+    return err_by(a / b, as_lanes_int(a) ^ (as_lanes_int(b) >> 1), 2);
+}
 static inline real erring_root(real a) { return err_by(sqrt(a), as_lanes_int(a), 3); }
 #define RAYA_DEVICE_DIVIDE(a, b) erring_quotient(a, b)
 #define RAYA_DEVICE_SQRT(a) erring_root(a)

@@ -1,4 +1,5 @@
-// An array inside a structure that is a kernel's argument, at an index that the compiler does not know: what lies there.
+// An array inside a structure that is a kernel's argument, at an index that the compiler
+// does not know: what lies there.
 //   out    one number for each work-item: 10, 20 or 30, and n where right
 // raya's kernels take structures from buffers, not as arguments, since this crashes a compiler.
 typedef struct {

@@ -13,7 +13,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void voxel_hits(__global const uint* restrict memories,  // of all nodes
                 __global const float* restrict rays,
                 const uint start,                        // of the node's words
-                const uint voxel,                        // its number in the node; as many as the node has: planes alone
+                const uint voxel,                        // number in the node; as many as the node has: planes alone
                 __global uint* restrict objects,         // [ray]: number among the voxel's objects, RAYA_NO_OBJECT
                 __global float* restrict distances,      // [ray]
                 __global float* restrict places)         // [ray][3][3]: G, N, colour; of a miss undefined
