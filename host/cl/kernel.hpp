@@ -34,6 +34,8 @@ template <class T>
 std::string argument_text(const T& value) {
     if constexpr (std::is_arithmetic_v<T>)
         return fmt::format("{}", value);
+    else if constexpr (std::is_enum_v<T>)
+        return fmt::format("{}", static_cast<std::underlying_type_t<T>>(value));
     else
         return fmt::format("struct of {} bytes", sizeof(T));
 }

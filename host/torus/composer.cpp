@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -12,32 +12,32 @@
 namespace raya {
 namespace {
 
-bool comes_before(const ReturnPacket& a, const ReturnPacket& b) {
-    return raya_comes_before(a[RAYA_PACKET_PATH], a[RAYA_PACKET_STATE], b[RAYA_PACKET_PATH], b[RAYA_PACKET_STATE]);
+bool comes_before(const raya_head& a, const raya_head& b) {
+    return raya_comes_before(a.path, a.state, b.path, b.state);
 }
 
-void put(std::vector<float>& colours, const ReturnPacket& packet) {
-    for (int i = 0; i < 3; ++i) colours.push_back(std::bit_cast<float>(packet[RAYA_PACKET_COLOUR + i]));
-    colours.push_back(std::bit_cast<float>(packet[RAYA_PACKET_WEIGHT]));
+void put(std::vector<float>& colours, const raya_head& packet) {
+    colours.insert(colours.end(), std::begin(packet.carries.colour), std::end(packet.carries.colour));
+    colours.push_back(packet.weight);
 }
 
 constexpr std::size_t kGroups = 64;  // work-groups of one work-item, each with many pixels
 
 }  // namespace
 
-Contributions sort_contributions(const std::vector<ReturnPacket>& returns, std::uint32_t pixels) {
+Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels) {
     if (returns.size() > std::numeric_limits<std::uint32_t>::max())
         throw UserError("more than 2^32 contributions to one image; render fewer pixels or with fewer --bounces");
     Contributions sorted;
     sorted.starts.assign(std::size_t{pixels} + 1, 0);
-    for (const ReturnPacket& packet : returns) {
-        if (packet[RAYA_PACKET_PIXEL] >= pixels)
-            throw std::logic_error(fmt::format("a contribution to pixel {} of {}", packet[RAYA_PACKET_PIXEL], pixels));
-        ++sorted.starts[packet[RAYA_PACKET_PIXEL] + 1];
+    for (const raya_head& packet : returns) {
+        if (packet.pixel >= pixels)
+            throw std::logic_error(fmt::format("a contribution to pixel {} of {}", packet.pixel, pixels));
+        ++sorted.starts[packet.pixel + 1];
     }
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) sorted.starts[pixel + 1] += sorted.starts[pixel];
     std::vector<std::uint32_t> next(sorted.starts.begin(), sorted.starts.end() - 1), order(returns.size());
-    for (std::uint32_t i = 0; i < returns.size(); ++i) order[next[returns[i][RAYA_PACKET_PIXEL]]++] = i;
+    for (std::uint32_t i = 0; i < returns.size(); ++i) order[next[returns[i].pixel]++] = i;
 
     sorted.colours.reserve(4 * returns.size());
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {

@@ -1,6 +1,5 @@
 // Puts the contributions that come back to the root into the order of their pixels' ray trees and adds them up.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,9 +10,6 @@
 
 namespace raya {
 
-/// A return packet (kernels/shared/packet.h).
-using ReturnPacket = std::array<std::uint32_t, RAYA_RETURN_WORDS>;
-
 /// Sorted as the pixels' sums need them: first to last pixel, in each the order of its ray tree. `starts`: [pixels +
 /// 1].
 struct Contributions {
@@ -21,9 +17,9 @@ struct Contributions {
     std::vector<std::uint32_t> starts;  // where those of each pixel start
 };
 
-/// Takes the packets in any order. std::logic_error for a pixel beyond `pixels`, or two packets with the same place in
+/// Takes return packets in any order. std::logic_error for a pixel beyond `pixels`, or two packets with the same place in
 /// a pixel's tree.
-Contributions sort_contributions(const std::vector<ReturnPacket>& returns, std::uint32_t pixels);
+Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels);
 
 class Composer {
   public:

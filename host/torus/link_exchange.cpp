@@ -1,12 +1,19 @@
 #include "host/torus/link_exchange.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace raya {
 namespace {
 
 // What a command costs beside its bytes, in bytes that could be copied in its time: some microseconds of PoCL.
 constexpr std::uint64_t kCommandBytes = 100'000;
+
+raya_head head_at(const std::uint32_t* packet) {
+    raya_head head;
+    std::memcpy(&head, packet, sizeof head);
+    return head;
+}
 
 }  // namespace
 
@@ -92,7 +99,7 @@ std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, st
 }
 
 void LinkExchange::visit_new(const NodeStatus& status,
-                             const std::function<void(std::uint32_t, const std::uint32_t*)>& visit) {
+                             const std::function<void(std::uint32_t, const raya_head&)>& visit) {
     for (std::uint32_t node = 0; node < nodes_; ++node) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
@@ -102,7 +109,7 @@ void LinkExchange::visit_new(const NodeStatus& status,
             if (!visit) continue;
             std::vector<std::uint32_t> words(std::size_t{packets - first} * cargo_.packet_words);
             session_.read("record", outboxes_, words, box_at(link, node) + box_words(first));
-            for (std::size_t i = 0; i < words.size(); i += cargo_.packet_words) visit(node, &words[i]);
+            for (std::size_t i = 0; i < words.size(); i += cargo_.packet_words) visit(node, head_at(&words[i]));
         }
     }
 }

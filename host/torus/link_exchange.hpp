@@ -51,10 +51,10 @@ class LinkExchange {
     /// [node][link], since clear(): packets sent.
     const std::vector<std::uint64_t>& packets() const { return packets_; }
 
-    /// Calls `visit`, if there is one, with node and words of every packet that was put into an outbox since the last
+    /// Calls `visit`, if there is one, with node and head of every packet that was put into an outbox since the last
     /// call.
     void visit_new(const NodeStatus& status,
-                   const std::function<void(std::uint32_t node, const std::uint32_t* packet)>& visit);
+                   const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
 
   private:
     /// Boxes of neighbouring numbers that one command copies: the links of nodes `first` .. `end` - 1, as far as

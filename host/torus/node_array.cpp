@@ -14,16 +14,10 @@ std::uint32_t largest_node(const NodeMemories& memories) {
     return largest;
 }
 
-std::uint32_t lights_of(const NodeMemories& memories) {
-    return reinterpret_cast<const raya_job*>(memories.words.data())->lights;
-}
-
-PacketRecord record_of(const raya_torus& torus, std::uint32_t superstep, std::uint32_t node,
-                       const std::uint32_t* packet) {
-    PacketRecord record{.superstep = superstep, .source = node, .destination = RAYA_ROOT};
-    std::copy_n(packet, record.head.size(), record.head.begin());
-    if (raya_state_kind(packet[RAYA_PACKET_STATE]) == RAYA_KIND_RETURN) return record;
-    const raya_place v = raya_unpack_place(packet[RAYA_PACKET_VOXEL]);
+PacketRecord record_of(const raya_torus& torus, std::uint32_t superstep, std::uint32_t node, const raya_head& packet) {
+    PacketRecord record{.superstep = superstep, .source = node, .destination = RAYA_ROOT, .head = packet};
+    if (raya_state_kind(packet.state) == RAYA_KIND_RETURN) return record;
+    const raya_place v = raya_unpack_place(packet.voxel);
     record.destination =
         raya_node_of(torus, v.at[0] % torus.nodes[0], v.at[1] % torus.nodes[1], v.at[2] % torus.nodes[2]);
     return record;
@@ -38,13 +32,13 @@ NodeArray::NodeArray(Session& session, const TorusSettings& settings, const Node
       buffers_(buffers),
       options_(options),
       nodes_(raya_nodes(settings.torus)),
-      new_packets_(raya_most_new_packets(lights_of(memories))),
       node_words_(largest_node(memories)),
       memories_(session.buffer<std::uint32_t>("node memories", memories.words.size())),
       starts_(session.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
-      queues_(session.buffer<std::uint32_t>("queues", std::size_t{nodes_} * buffers.queue * RAYA_PACKET_WORDS)),
+      run_(session.buffer<raya_run>("run", 1)),
+      queues_(session.buffer<raya_packet>("queues", std::size_t{nodes_} * buffers.queue)),
       status_(session.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
-      returns_(session.buffer<std::uint32_t>("returns", std::size_t{buffers.queue} * RAYA_RETURN_WORDS)),
+      returns_(session.buffer<raya_head>("returns", buffers.queue)),
       events_(session.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
       made_(session.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
       ended_(session.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
@@ -52,7 +46,7 @@ NodeArray::NodeArray(Session& session, const TorusSettings& settings, const Node
             {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
       homeward_(session, settings.torus, buffers.box,
                 {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX}) {
-    const std::size_t most_shared = std::max<std::size_t>(RAYA_SHARED_WORDS, RAYA_ROUTE_WORDS);
+    const std::size_t most_shared = std::max<std::size_t>(RAYA_COUNT_WORDS, RAYA_ROUTE_WORDS);
     options_.words_local =
         sizeof(cl_uint) * (most_shared + own_words() + node_words_) <= session.device().local_memory_bytes;
     std::vector<std::string> all = raya::build_options(options_, session.device());
@@ -63,6 +57,17 @@ NodeArray::NodeArray(Session& session, const TorusSettings& settings, const Node
     accept_ = build<Accept>("accept", all);
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
+    set_pixels(settings.pixels);
+}
+
+void NodeArray::set_pixels(const PixelSubset& pixels) {
+    const raya_run run{.queue = buffers_.queue,
+                       .box = buffers_.box,
+                       .host = buffers_.queue,
+                       .stride = pixels.stride,
+                       .offset = pixels.first,
+                       .root_injects = settings_.inject == Injection::kRoot};
+    session_.write("scatter", run_, {&run, 1});
 }
 
 template <class K>
@@ -88,29 +93,26 @@ void NodeArray::clear() {
     homeward_.clear();
 }
 
-void NodeArray::inject(const PixelSubset& pixels) {
-    session_.launch("inject", *inject_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, pixels.stride,
-                    pixels.first, static_cast<cl_uint>(settings_.inject == Injection::kRoot),
-                    local_words(RAYA_SHARED_WORDS), queues_, status_, events_, made_, ended_);
+void NodeArray::inject() {
+    session_.launch("inject", *inject_, nodes_, options_.group_size, memories_, starts_, run_,
+                    local_words(RAYA_COUNT_WORDS), queues_, status_, events_, made_, ended_);
 }
 
-void NodeArray::trace_voxel(bool tight) {
-    session_.launch("trace_voxel", *trace_, nodes_, options_.group_size, memories_, starts_, buffers_.queue,
-                    static_cast<cl_uint>(tight), local_words(RAYA_SHARED_WORDS), queues_, status_, events_, made_,
-                    ended_);
+void NodeArray::trace_voxel(Room room) {
+    session_.launch("trace_voxel", *trace_, nodes_, options_.group_size, memories_, starts_, run_, room,
+                    local_words(RAYA_COUNT_WORDS), queues_, status_, events_, made_, ended_);
 }
 
 void NodeArray::route() {
-    session_.launch("route", *route_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, buffers_.box,
-                    buffers_.queue, local_words(RAYA_ROUTE_WORDS), queues_, rays_.outboxes(), homeward_.outboxes(),
-                    returns_, status_, ended_);
+    session_.launch("route", *route_, nodes_, options_.group_size, memories_, starts_, run_,
+                    local_words(RAYA_ROUTE_WORDS), queues_, rays_.outboxes(), homeward_.outboxes(), returns_, status_,
+                    ended_);
 }
 
-void NodeArray::accept(bool tight, std::uint32_t superstep) {
-    session_.launch("accept", *accept_, nodes_, options_.group_size, memories_, starts_, buffers_.queue, buffers_.box,
-                    buffers_.queue, new_packets_, static_cast<cl_uint>(tight), superstep, rays_.sent(),
-                    homeward_.sent(), Local{options_.group_size}, queues_, rays_.inboxes(), homeward_.inboxes(),
-                    homeward_.outboxes(), returns_, status_, ended_);
+void NodeArray::accept(Room room, std::uint32_t superstep) {
+    session_.launch("accept", *accept_, nodes_, options_.group_size, memories_, starts_, run_, room, superstep,
+                    rays_.sent(), homeward_.sent(), Local{options_.group_size}, queues_, rays_.inboxes(),
+                    homeward_.inboxes(), homeward_.outboxes(), returns_, status_, ended_);
 }
 
 std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
@@ -132,12 +134,10 @@ NodeStatus NodeArray::look() {
     return status;
 }
 
-void NodeArray::gather(const NodeStatus& status, std::vector<std::array<std::uint32_t, RAYA_RETURN_WORDS>>& returns) {
-    const std::size_t waiting = status.at(RAYA_ROOT, RAYA_STATUS_HOST);
-    if (waiting == 0) return;
-    const std::size_t before = returns.size();
+void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns) {
+    const std::size_t waiting = status.at(RAYA_ROOT, RAYA_STATUS_HOST), before = returns.size();
     returns.resize(before + waiting);
-    session_.read("gather", returns_, {returns[before].data(), waiting * RAYA_RETURN_WORDS});
+    session_.read("gather", returns_, std::span(returns).subspan(before));
 }
 
 void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
@@ -146,9 +146,8 @@ void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const 
         return homeward_.visit_new(status, {});
     }
     std::vector<PacketRecord> records;
-    const auto take = [&](std::uint32_t node, const std::uint32_t* packet) {
-        if (packet[RAYA_PACKET_STATE] & RAYA_STATE_FRESH)
-            records.push_back(record_of(settings_.torus, superstep, node, packet));
+    const auto take = [&](std::uint32_t node, const raya_head& packet) {
+        if (packet.state & RAYA_STATE_FRESH) records.push_back(record_of(settings_.torus, superstep, node, packet));
     };
     rays_.visit_new(status, take);
     homeward_.visit_new(status, take);

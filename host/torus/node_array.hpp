@@ -14,6 +14,12 @@
 
 namespace raya {
 
+/// Room that packets ask for before they are accepted or treated (kernels/shared/traffic.h).
+enum class Room : cl_uint {
+    kWholeTree,  // for all that a ray's tree may turn into
+    kTight       // as little as can be
+};
+
 /// The kernels are launched with one work-group for each node; each step is labelled with its kernel's name.
 class NodeArray {
   public:
@@ -24,19 +30,21 @@ class NodeArray {
     /// Empty queues and boxes, counters 0, no ray made.
     void clear();
 
-    // `tight`: packets get on with as little room as can be (kernels/shared/traffic.h).
-    void inject(const PixelSubset& pixels);
-    void trace_voxel(bool tight);
+    /// Other pixels for the images that follow; at first those of the settings.
+    void set_pixels(const PixelSubset& pixels);
+
+    void inject();
+    void trace_voxel(Room room);
     void route();
-    /// Rays, then returns; gives the words that each link carried, [node][RAYA_LINKS].
+    /// Rays, then returns; returns the words that each link carried, [node][RAYA_LINKS].
     std::vector<std::uint64_t> exchange(const NodeStatus& status);
-    void accept(bool tight, std::uint32_t superstep);
+    void accept(Room room, std::uint32_t superstep);
 
     /// What the nodes say; the host waits. accept() clears what they say of one superstep.
     NodeStatus look();
 
     /// Return packets that have reached the root since the last call are appended.
-    void gather(const NodeStatus& status, std::vector<std::array<std::uint32_t, RAYA_RETURN_WORDS>>& returns);
+    void gather(const NodeStatus& status, std::vector<raya_head>& returns);
 
     /// Packets in the outboxes that were made or changed by the node that sends them; for a trace of the traffic. To be
     /// called in every superstep; with an empty sink those of this one are left out.
@@ -55,12 +63,14 @@ class NodeArray {
     using State = Buffer<std::uint32_t>&;
     using Counters = Buffer<std::uint64_t>&;
     using Local = LocalMemory<std::uint32_t>;
-    using Inject =
-        Kernel<Words, Words, cl_uint, cl_uint, cl_uint, cl_uint, Local, State, State, Counters, Counters, Counters>;
-    using Trace = Kernel<Words, Words, cl_uint, cl_uint, Local, State, State, Counters, Counters, Counters>;
-    using Route = Kernel<Words, Words, cl_uint, cl_uint, cl_uint, Local, State, State, State, State, State, Counters>;
-    using Accept = Kernel<Words, Words, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, Words, Words, Local,
-                          State, State, State, State, State, State, Counters>;
+    using Run = const Buffer<raya_run>&;
+    using Rays = Buffer<raya_packet>&;
+    using Returns = Buffer<raya_head>&;
+    using Inject = Kernel<Words, Words, Run, Local, Rays, State, Counters, Counters, Counters>;
+    using Trace = Kernel<Words, Words, Run, Room, Local, Rays, State, Counters, Counters, Counters>;
+    using Route = Kernel<Words, Words, Run, Local, Rays, State, State, Returns, State, Counters>;
+    using Accept = Kernel<Words, Words, Run, Room, cl_uint, Words, Words, Local, Rays, State, State, State, Returns,
+                          State, Counters>;
 
     template <class K>
     std::unique_ptr<K> build(const std::string& name, const std::vector<std::string>& all);
@@ -73,8 +83,12 @@ class NodeArray {
     const TorusSettings settings_;
     NodeBuffers buffers_;
     KernelOptions options_;
-    std::uint32_t nodes_, new_packets_, node_words_;
-    Buffer<std::uint32_t> memories_, starts_, queues_, status_, returns_;
+    std::uint32_t nodes_, node_words_;
+    Buffer<std::uint32_t> memories_, starts_;
+    Buffer<raya_run> run_;
+    Buffer<raya_packet> queues_;
+    Buffer<std::uint32_t> status_;
+    Buffer<raya_head> returns_;
     Buffer<std::uint64_t> events_, made_, ended_;
     LinkExchange rays_, homeward_;  // boxes of rays, of returns
     std::string build_options_;

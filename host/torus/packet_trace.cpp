@@ -21,9 +21,9 @@ struct Lineage {
 
 // A return packet leaves the node that made it once and is nobody's parent, so its number need not be kept.
 Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
-    const std::uint32_t state = record.head[RAYA_PACKET_STATE], kind = raya_state_kind(state);
-    const RayName name = {record.head[RAYA_PACKET_PIXEL],
-                          RayName::place_of(record.head[RAYA_PACKET_PATH], raya_state_level(state)),
+    const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
+    const RayName name = {record.head.pixel,
+                          RayName::place_of(record.head.path, raya_state_level(state)),
                           raya_state_light(state)};
     Lineage lineage;
     lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next() : numbers.number_of(name);
@@ -36,7 +36,7 @@ Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
 
 // What only a mistake in a kernel can make; a wrong row would be worse than none.
 void check_head(const PacketRecord& record) {
-    const std::uint32_t state = record.head[RAYA_PACKET_STATE], kind = raya_state_kind(state);
+    const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
     const bool root_of_tree = raya_state_level(state) == 0, has_light = raya_state_light(state) != 0;
     const bool right =
         kind == RAYA_KIND_RETURN || (has_light == (kind == RAYA_KIND_SHADOW) &&
@@ -57,7 +57,7 @@ const char* packet_kind_name(std::uint32_t kind) {
 PacketTrace::PacketTrace() : text_("superstep,source,destination,kind,bytes,ray,parent\n") {}
 
 void PacketTrace::add(const PacketRecord& record) {
-    const std::uint32_t state = record.head[RAYA_PACKET_STATE];
+    const std::uint32_t state = record.head.state;
     const char* const kind = packet_kind_name(raya_state_kind(state));
     check_head(record);
     const Lineage lineage = lineage_of(numbers_, record);

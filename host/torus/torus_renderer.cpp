@@ -57,9 +57,9 @@ struct TorusRenderer::Parts {
 
     void divide(std::uint32_t lights);
     void build();
-    void run(TorusResult& result, std::vector<ReturnPacket>& returns, const ProgressCallback& progress,
+    void run(TorusResult& result, std::vector<raya_head>& returns, const ProgressCallback& progress,
              const PacketWatch& packets, const SuperstepSink& step_sink);
-    void compose(TorusResult& result, const std::vector<ReturnPacket>& returns);
+    void compose(TorusResult& result, const std::vector<raya_head>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
     void describe(TorusResult& result) const;
@@ -92,7 +92,10 @@ void TorusRenderer::Parts::divide(std::uint32_t lights) {
 
 TorusRenderer::~TorusRenderer() = default;
 
-void TorusRenderer::set_pixels(const PixelSubset& pixels) { parts_->settings.pixels = pixels; }
+void TorusRenderer::set_pixels(const PixelSubset& pixels) {
+    parts_->settings.pixels = pixels;
+    parts_->nodes->set_pixels(pixels);
+}
 
 void TorusRenderer::Parts::build() {
     const StepLog::Step step = session.step("set up device");
@@ -104,9 +107,9 @@ void TorusRenderer::Parts::build() {
     all.insert(all.end(), settings.kernels.more_options.begin(), settings.kernels.more_options.end());
     composer = std::make_unique<Composer>(session, all, settings.kernels.sources);
     nodes->clear();
-    nodes->trace_voxel(false);  // of empty queues: PoCL compiles a kernel's body at its first launch
+    nodes->trace_voxel(Room::kWholeTree);  // of empty queues: PoCL compiles a kernel's body at its first launch
     nodes->route();
-    nodes->accept(false, 0);
+    nodes->accept(Room::kWholeTree, 0);
     session.finish();
     build_s = seconds_since(start);
 }
@@ -118,7 +121,7 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     const Clock::time_point start = Clock::now();
     const StepLog::Step rendering = p.session.step("render");
     TorusResult result;
-    std::vector<ReturnPacket> returns;
+    std::vector<raya_head> returns;
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
     try {
         p.run(result, returns, progress, {sink, packets_every}, step_sink);
@@ -137,24 +140,24 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     return result;
 }
 
-void TorusRenderer::Parts::run(TorusResult& result, std::vector<ReturnPacket>& returns,
+void TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
                                const ProgressCallback& progress, const PacketWatch& packets,
                                const SuperstepSink& step_sink) {
     const StepLog::Step step = session.step("supersteps");
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
-    bool tight = false;
+    Room room = Room::kWholeTree;
     bool crowded = false;
     int stands = 0;  // supersteps without progress
     for (std::uint32_t superstep = 0;; ++superstep) {
-        if (!crowded) nodes->inject(settings.pixels);
-        nodes->trace_voxel(tight);
+        if (!crowded) nodes->inject();
+        nodes->trace_voxel(room);
         nodes->route();
         const NodeStatus status = nodes->look();
         nodes->gather(status, returns);
         if (packets.sink) nodes->record(status, superstep, superstep % packets.every ? PacketSink{} : packets.sink);
         const std::vector<std::uint64_t> words = nodes->exchange(status);
-        nodes->accept(tight, superstep);
+        nodes->accept(room, superstep);
 
         const Census census = census_of(status, raya_nodes(settings.torus), buffers.queue);
         const std::uint64_t most_words = *std::max_element(words.begin(), words.end());
@@ -168,11 +171,11 @@ void TorusRenderer::Parts::run(TorusResult& result, std::vector<ReturnPacket>& r
         // What a superstep with little room has accepted is seen in the next one.
         stands = census.progress == 0 && most_words == 0 ? stands + 1 : 0;
         if (stands == 3) throw Standstill{superstep, census.live, census.full};
-        tight = stands > 0;
+        room = stands > 0 ? Room::kTight : Room::kWholeTree;
     }
 }
 
-void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<ReturnPacket>& returns) {
+void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<raya_head>& returns) {
     const StepLog::Step step = session.step("compose");
     result.contributions = returns.size();
     const std::uint32_t pixels = settings.width * settings.height;
@@ -235,7 +238,7 @@ bool TorusRenderer::Parts::ends_with(const NodeBuffers& other) {
     buffers = other;
     build();
     TorusResult result;
-    std::vector<ReturnPacket> returns;
+    std::vector<raya_head> returns;
     try {
         run(result, returns, {}, {}, {});
     } catch (const Standstill&) {

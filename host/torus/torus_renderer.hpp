@@ -59,7 +59,7 @@ struct Superstep {
 /// A packet that leaves the node where it was made or changed, on its way to another one.
 struct PacketRecord {
     std::uint32_t superstep = 0, source = 0, destination = 0;  // nodes
-    std::array<std::uint32_t, RAYA_RETURN_WORDS> head{};       // its first words: pixel, state, path, weight, ...
+    raya_head head{};
 };
 using PacketSink = std::function<void(const PacketRecord&)>;
 

@@ -47,7 +47,7 @@ void TorusTrace::add_superstep(const SuperstepDetail& step) {
 
 // Reservoir sampling (J. S. Vitter, "Random Sampling with a Reservoir", 1985, algorithm R).
 void TorusTrace::add_packet(const PacketRecord& p) {
-    const Sample sample = {p.superstep, p.source, p.destination, p.head[RAYA_PACKET_STATE], p.head[RAYA_PACKET_PIXEL]};
+    const Sample sample = {p.superstep, p.source, p.destination, p.head.state, p.head.pixel};
     ++packets_seen_;
     if (packets_.size() < kMostPackets) return packets_.push_back(sample);
     const std::uint64_t place = random_.next() % packets_seen_;
@@ -77,7 +77,7 @@ class TorusTrace::Timeline {
         }
     }
 
-    // Gives how many there are.
+    // Returns their number.
     std::size_t add_flows() {
         std::set<std::uint32_t> shown;
         for (const TracedPe& n : nodes_) shown.insert(n.pe);

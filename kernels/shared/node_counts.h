@@ -1,18 +1,19 @@
-// What the work-items of a node share in local memory while they treat its queue: slots taken and in use, and what is counted.
+// What the work-items of a node share in local memory while they treat its queue: slots taken
+// and in use, and what is counted.
 #ifndef RAYA_SHARED_NODE_COUNTS_H
 #define RAYA_SHARED_NODE_COUNTS_H
 #include "kernels/shared/events.h"
 #include "kernels/shared/packet.h"
 
 enum {
-    RAYA_SHARED_NEXT,      // slot of the next packet that nobody has taken
-    RAYA_SHARED_RESERVED,  // slots in use or reserved
-    RAYA_SHARED_USED,      // slots in use
-    RAYA_SHARED_PROGRESS,  // packets treated
-    RAYA_SHARED_EVENTS,    // events, low and high word of each kind
-    RAYA_SHARED_MADE = RAYA_SHARED_EVENTS + 2 * RAYA_EVENTS,  // packets made, of each kind
-    RAYA_SHARED_ENDED = RAYA_SHARED_MADE + RAYA_KINDS,        // packets ended
-    RAYA_SHARED_WORDS = RAYA_SHARED_ENDED + RAYA_KINDS
+    RAYA_COUNT_NEXT,      // slot of the next packet that nobody has taken
+    RAYA_COUNT_RESERVED,  // slots in use or reserved
+    RAYA_COUNT_USED,      // slots in use
+    RAYA_COUNT_PROGRESS,  // packets treated
+    RAYA_COUNT_EVENTS,    // events, low and high word of each kind
+    RAYA_COUNT_MADE = RAYA_COUNT_EVENTS + 2 * RAYA_EVENTS,  // packets made, of each kind
+    RAYA_COUNT_ENDED = RAYA_COUNT_MADE + RAYA_KINDS,        // packets ended
+    RAYA_COUNT_WORDS = RAYA_COUNT_ENDED + RAYA_KINDS
 };
 
 // Where packets go that are routed: over a link, or

@@ -1,39 +1,49 @@
 // What travels between nodes: ray packets and return packets, 16 and 8 words (Yoshitani & Yamazaki, Table 1 and protocol).
 //
 //   the paper's field            here
-//   voxel, next voxel            VOXEL: the voxel that the packet goes to; what it was in before is not needed
-//   screen position *            PIXEL
-//   kind of ray *                STATE: kind, level, light, flags; PATH: which ray of its pixel's tree
-//   weight                       WEIGHT *
-//   direction                    ORIGIN and DIRECTION: a ray must not change on its way, or its hits would
-//   luminance *                  COLOUR
+//   voxel, next voxel            voxel: the one that the packet goes to; what it was in before is not needed
+//   screen position *            pixel
+//   kind of ray *                state: kind, level, light, flags; path: which ray of its pixel's tree
+//   weight                       weight *
+//   direction                    origin and direction: a ray must not change on its way, or its hits would
+//   luminance *                  colour
 //   intersection, normal, data of the object hit: not here; a hit is shaded where it is found
 //   data for the search of the next voxel: not here; made anew from ray and voxel, the same in every node
 //
-// (* also in a return packet.) A return packet is one contribution to its pixel: colour times weight. The host adds those of a pixel in the
-// order of its ray tree, which PATH, level and light tell: a ray's own contributions (ambient term, then lights in turn), then
-// those of all that follows its reflected ray, then its refracted ray.
+// (* also in a return packet.) A return packet is one contribution to its pixel: colour times weight. The host adds
+// those of a pixel in the order of its ray tree, which path, level and light tell: a ray's own contributions (ambient
+// term, then lights in turn), then those of all that follows its reflected ray, then its refracted ray.
 #ifndef RAYA_SHARED_PACKET_H
 #define RAYA_SHARED_PACKET_H
 #include "kernels/shared/torus.h"
 
-enum {
-    RAYA_PACKET_PIXEL = 0,   // row * W + column
-    RAYA_PACKET_STATE = 1,   // see below
-    RAYA_PACKET_PATH = 2,    // bit 31 - l set: at level l the tree's path takes the refracted ray, else the reflected one
-    RAYA_PACKET_WEIGHT = 3,  // of the ray; of a return: what its colour is multiplied by
-    RAYA_PACKET_COLOUR = 4,  // return: r g b. Shadow: what the light adds if the ray arrives. Other rays: unused, see FOUND_OBJECT
-    RAYA_PACKET_VOXEL = 7,   // place of the voxel that the ray goes to or is in; RAYA_NO_VOXEL: it will never enter the box
-    RAYA_RETURN_WORDS = 8,
-    RAYA_PACKET_ORIGIN = 8,      // x y z
-    RAYA_PACKET_DIRECTION = 11,  // x y z, of length 1
-    RAYA_PACKET_LIMIT = 14,      // hits count below: a shadow ray's distance to its light; of a wide ray: of its nearest hit so far
-    RAYA_PACKET_FOUND = 15,      // of a wide ray that is no shadow ray: place of the voxel where the nearest hit so far was found, RAYA_NO_VOXEL without one
-    RAYA_PACKET_WORDS = 16,
-    RAYA_PACKET_FOUND_OBJECT = RAYA_PACKET_COLOUR,   // of a wide ray that is no shadow ray: number of the object hit, in the whole scene
-    RAYA_PACKET_START = RAYA_PACKET_COLOUR + 1,      // of such a ray: place of the voxel that it visited first
-    RAYA_PACKET_SHADOW_START = RAYA_PACKET_FOUND     // of a wide shadow ray: the same
-};
+// How every packet begins; a return packet is no more than that. A voxel is named by its place (raya_pack_place).
+typedef struct {
+    raya_u32 pixel;  // row * W + column
+    raya_u32 state;  // see below
+    raya_u32 path;   // bit 31 - l set: at level l the tree's path takes the refracted ray, else the reflected one
+    float weight;    // of the ray; of a return: what its colour is multiplied by
+    union {
+        float colour[3];  // return: red, green, blue. Shadow ray: what the light adds if the ray arrives
+        struct {
+            raya_u32 voxel;   // where it was found, RAYA_NO_VOXEL without one
+            raya_u32 object;  // its number in the whole scene
+        } nearest;            // the nearest hit so far of a wide ray that is no shadow ray
+    } carries;
+    raya_u32 voxel;  // of a ray: where it goes to or is; RAYA_NO_VOXEL: it will never enter the box
+} raya_head;
+RAYA_SHARED_SIZE(raya_head, 4 * 8);
+
+typedef struct {
+    raya_head head;
+    float origin[3];
+    float direction[3];  // of length 1
+    float limit;         // hits count below: a shadow ray's distance to its light; a wide ray's to its nearest hit so far
+    raya_u32 start;      // of a wide ray: the voxel that it visited first
+} raya_packet;
+RAYA_SHARED_SIZE(raya_packet, 4 * 16);
+
+enum { RAYA_RETURN_WORDS = sizeof(raya_head) / 4, RAYA_PACKET_WORDS = sizeof(raya_packet) / 4 };
 
 // A voxel's place in one word: x in bits 0..9, y in 10..19, z in 20..29.
 #define RAYA_MOST_PLACES 1024u
@@ -56,10 +66,10 @@ enum {  // kinds; 0: no packet
     RAYA_KINDS
 };
 
-// STATE: kind in bits 0..2, flags in 3..5, level in 8..12, light in 16..31.
+// State: kind in bits 0..2, flags in 3..5, level in 8..12, light in 16..31.
 #define RAYA_STATE_KIND 0x7u
-// Must be tested against all objects (kernels/grid/walk.clh): visits all voxels in turn, from one of the node where it was made on, and is shaded where
-// its nearest hit was found.
+// Must be tested against all objects (kernels/grid/walk.clh): visits all voxels in turn, from one of the node where it
+// was made on, and is shaded where its nearest hit was found.
 #define RAYA_STATE_WIDE 0x8u
 // A wide ray that has visited all voxels and goes to be shaded.
 #define RAYA_STATE_FOUND 0x10u
@@ -69,7 +79,8 @@ enum {  // kinds; 0: no packet
 #define RAYA_STATE_LIGHT_SHIFT 16u
 #define RAYA_MOST_LIGHTS 65535u
 
-// Light: of a shadow ray the light's number + 1; of a return 0 for an ambient term or a background, else a light's number + 1.
+// Light: of a shadow ray the light's number + 1; of a return 0 for an ambient term or a
+// background, else a light's number + 1.
 RAYA_SHARED_FUNCTION raya_u32 raya_state(raya_u32 kind, raya_u32 level, raya_u32 light) {
     return kind | level << RAYA_STATE_LEVEL_SHIFT | light << RAYA_STATE_LIGHT_SHIFT;
 }

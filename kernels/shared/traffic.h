@@ -1,13 +1,15 @@
 // Queues, boxes and the few words by which a node tells the host how it stands.
 //
-//   queue   [node][capacity][16]: packets that wait in the node, from the first slot on
-//   box     [link][node][1 + capacity][w]: a header, whose first word is the number of packets, then the packets, of w = 16 words for rays
-//           and 8 for returns. An outbox is filled by its node and copied into the inbox at the other end of the link, which the
-//           node there empties; both are numbered by the link's direction and the node at its start
+//   queue   [node][capacity]: packets that wait in the node, from the first slot on
+//   box     [link][node][1 + capacity][w]: a header, whose first word is the number of packets, then the packets, of
+//           w = 16 words for rays and 8 for returns. An outbox is filled by its node and copied into the inbox at the
+//           other end of the link, which the node there empties; both are numbered by the link's direction and the node
+//           at its start
 //   status  [node][RAYA_STATUS_WORDS]
 //
-// Rays and returns have boxes of their own. Returns all go to the root, each node's by its one link home, from inbox to outbox without a queue;
-// those ways are a tree, and the host takes what comes to its root. So returns never stand still, whatever rays do.
+// Rays and returns have boxes of their own. Returns all go to the root, each node's by its one link home, from inbox
+// to outbox without a queue; those ways are a tree, and the host takes what comes to its root. So returns never
+// stand still, whatever rays do.
 #ifndef RAYA_SHARED_TRAFFIC_H
 #define RAYA_SHARED_TRAFFIC_H
 #include "kernels/shared/packet.h"
@@ -28,13 +30,25 @@ enum {
     RAYA_STATUS_WORDS = 33
 };
 
-// Packets that a ray may turn into beside the one that takes its slot: shadow rays (lights or a return for each) and two rays that follow.
+// What stays the same through a render, and the nodes read from a buffer.
+typedef struct {
+    raya_u32 queue;           // packets that a node's queue holds
+    raya_u32 box;             // packets that a box holds
+    raya_u32 host;            // returns that wait for the host at most
+    raya_u32 stride, offset;  // primary rays are those of the pixels offset, offset + stride, ..., counted row by row
+    raya_u32 root_injects;    // 1: the root makes all primary rays; 0: every node its own
+} raya_run;
+RAYA_SHARED_SIZE(raya_run, 4 * 6);
+
+// Packets that a ray may turn into beside the one that takes its slot: shadow rays (lights or a return for
+// each) and two rays that follow.
 RAYA_SHARED_FUNCTION raya_u32 raya_most_new_packets(raya_u32 lights) { return lights + 2; }
 
-// Free slots that a ray of a level asks for before it is accepted or treated: what its tree needs, walked depth first, if every ray of it hits.
-// Shadow rays turn into one packet at most, and are treated without more room; to be accepted they leave room for one hit. So a ray that was let in can always be brought to its
-// end by the node alone, and only nodes that wait for each other's links can stand still. When they do, the host lets them go on with less room
-// for a superstep (`tight`).
+// Free slots that a ray of a level asks for before it is accepted or treated: what its tree needs, walked depth
+// first, if every ray of it hits. Shadow rays turn into one packet at most, and are treated without more room; to be
+// accepted they leave room for one hit. So a ray that was let in can always be brought to its end by the node alone,
+// and only nodes that wait for each other's links can stand still. When they do, the host lets them go on with less
+// room for a superstep (`tight`).
 RAYA_SHARED_FUNCTION raya_u32 raya_room_of_ray(raya_u32 new_packets, raya_u32 bounces, raya_u32 level) {
     return (bounces + 1 - level) * new_packets;
 }

@@ -1,54 +1,66 @@
-// accept: rays that have come over the links go into the queue of their node, as far as there is room (raya_room_of_packet); returns go straight into the
-// outbox of the link home, in the root to the host. What has no room stays in the inbox, and nothing more comes over that link
-// until it is empty.
+// accept: rays that have come over the links go into the queue of their node, as far as there is room
+// (raya_room_of_packet); returns go straight into the outbox of the link home, in the root to the host. What has no
+// room stays in the inbox, and nothing more comes over that link until it is empty.
 //
-// One work-group is one node. The inboxes are looked through one after another, another one first in every superstep; of each, L packets at a time.
+// One work-group is one node. The inboxes are looked through one after another, another one first in every superstep;
+// of each, L packets at a time.
 #include "kernels/torus/moves.clh"
 
 #define RAYA_TAKEN 0u  // goals
 #define RAYA_LEFT_THERE 1u
 #define RAYA_NOTHING 2u
 
-// Takes what has room out of an inbox; gives how many packets. `left` of them stay, at its front. Has barriers.
-static inline uint empty_inbox(__global uint* inbox, __global uint* queue, uint used, uint capacity, uint new_packets,
-                               uint tight, __local uint* goals, uint* left) {
+// The queue of the node, while rays are put into it.
+typedef struct {
+    __global raya_packet* packets;
+    uint used, capacity;  // packets
+    uint new_packets;     // that a hit may turn into (raya_most_new_packets)
+    uint tight;           // 1: any free slot will do
+} open_queue;
+
+// Moves the rays that have room from an inbox to the queue and returns how many stay, at the inbox's front. Has
+// barriers.
+static inline uint empty_inbox(__global uint* inbox, open_queue* queue, __local uint* goals) {
+    __global raya_packet* const rays = rays_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0];
-    uint taken = 0;
-    *left = 0;
+    uint taken = 0, left = 0;
     for (uint first = 0; first < waiting; first += RAYA_GROUP) {
         const uint slot = first + item;
-        uint16 packet = packet_at(inbox, 1 + min(slot, waiting - 1));
-        const uint room = tight ? 0 : raya_room_of_packet(new_packets, RAYA_BOUNCES, packet.s1);
-        const int fits = used + taken + item + 1 + room <= capacity;
+        raya_packet packet = rays[min(slot, waiting - 1)];
+        const uint room = queue->tight ? 0 : raya_room_of_packet(queue->new_packets, RAYA_BOUNCES, packet.head.state);
+        const int fits = queue->used + taken + item + 1 + room <= queue->capacity;
         const uint goal = slot >= waiting ? RAYA_NOTHING : fits ? RAYA_TAKEN : RAYA_LEFT_THERE;
         goals[item] = goal;
         node_barrier();
         const uint rank = rank_among(goals, goal);
         // What stays moves to a slot that this loop has read already.
-        if (goal == RAYA_LEFT_THERE) put_packet(packet, inbox, 1 + *left + rank);
-        packet.s1 &= ~RAYA_STATE_FRESH;
-        if (goal == RAYA_TAKEN) put_packet(packet, queue, used + taken + rank);
+        if (goal == RAYA_LEFT_THERE) rays[left + rank] = packet;
+        packet.head.state &= ~RAYA_STATE_FRESH;
+        if (goal == RAYA_TAKEN) queue->packets[queue->used + taken + rank] = packet;
         taken += number_of(goals, RAYA_TAKEN);
-        *left += number_of(goals, RAYA_LEFT_THERE);
+        left += number_of(goals, RAYA_LEFT_THERE);
         node_barrier();
     }
-    return taken;
+    queue->used += taken;
+    return left;
 }
 
-// Passes as many of an inbox's returns on as `to` has room for, of `capacity` when `used` are there; gives how many. The others stay, at the inbox's front.
-static inline uint pass_returns(__global uint* inbox, __global uint* to, uint used, uint capacity, uint* left) {
+// Moves returns from an inbox to `to`, which holds `used` of at most `capacity`, and returns their number. `left`
+// returns stay, at the inbox's front. Has barriers.
+static inline uint pass_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left) {
+    __global raya_head* const returns = returns_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0], moves = min(waiting, capacity - used);
     *left = waiting - moves;
     for (uint i = item; i < moves; i += RAYA_GROUP) {
-        uint8 packet = vload8(1 + i, inbox);
-        packet.s1 &= ~RAYA_STATE_FRESH;
-        vstore8(packet, used + i, to);
+        raya_head packet = returns[i];
+        packet.state &= ~RAYA_STATE_FRESH;
+        to[used + i] = packet;
     }
     for (uint first = 0; moves > 0 && first < *left; first += RAYA_GROUP) {
         const uint i = first + item;
-        const uint8 packet = vload8(1 + moves + min(i, *left - 1), inbox);
+        const raya_head packet = returns[moves + min(i, *left - 1)];
         node_barrier();
-        if (i < *left) vstore8(packet, 1 + i, inbox);
+        if (i < *left) returns[i] = packet;
         node_barrier();
     }
     return moves;
@@ -57,42 +69,43 @@ static inline uint pass_returns(__global uint* inbox, __global uint* to, uint us
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void accept(__global const uint* restrict memories,     // nodes' words, one after another (kernels/shared/node.h)
             __global const uint* restrict starts,       // [node]: where its words start
-            const uint capacity,                        // packets that a queue holds
-            const uint box,                             // packets that a box holds
-            const uint host_capacity,                   // returns that wait for the host at most
-            const uint new_packets,                     // that a hit may turn into (raya_most_new_packets)
+            __global const raya_run* restrict run,
             const uint tight,                           // 1: any free slot will do
             const uint turn,                            // number of the superstep: which link comes first
-            __global const uint* restrict sent,         // [link][node]: 1 where the outbox of rays of the node has been copied
+            __global const uint* restrict sent,         // [link][node]: 1 where its outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: ... of returns
             __local uint* goals,                        // L words
-            __global uint* restrict queues,             // [node][capacity][16]
+            __global raya_packet* restrict queues,      // [node][queue]
             __global uint* restrict inboxes,            // of rays (kernels/shared/traffic.h)
             __global uint* restrict return_inboxes,
             __global uint* restrict return_outboxes,
-            __global uint* restrict returns,            // [host_capacity][8]: those that have reached the root
+            __global raya_head* restrict returns,       // [host]: those that have reached the root
             __global uint* restrict status,             // [node][RAYA_STATUS_WORDS]
             __global ulong* restrict ended)             // [node][RAYA_KINDS], added to
 {
-    const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0);
+    const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0), box = run->box;
     const int root = number == RAYA_ROOT;
-    const raya_torus torus = ((__global const raya_node*)(memories + starts[number]))->torus;
+    __global const raya_node* const header = (__global const raya_node*)(memories + starts[number]);
+    const raya_torus torus = header->torus;
     const uint home = raya_home_link(torus, number);
-    __global uint* home_box = root ? returns : return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);
-    __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
+    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);
+    __global raya_head* const homeward = root ? returns : returns_in(home_box);
     status += (size_t)number * RAYA_STATUS_WORDS;
     const uint before = status[RAYA_STATUS_QUEUE];
+    open_queue queue = {queues + (size_t)number * run->queue, before, run->queue,
+                        raya_most_new_packets(header->job.lights), tight};
     // The host has taken what was there, or copied it.
-    const uint homeward = root || return_sent[(size_t)home * nodes + number] ? 0 : status[RAYA_STATUS_RETURN_OUTBOX + home];
-    uint used = before, home_used = homeward;
+    const int gone = root || return_sent[(size_t)home * nodes + number];
+    const uint home_before = gone ? 0 : status[RAYA_STATUS_RETURN_OUTBOX + home];
+    uint home_used = home_before;
     for (uint i = 0; i < RAYA_LINKS; ++i) {
         const uint link = (i + turn) % RAYA_LINKS;
         const uint start = raya_link_end(torus, number, link ^ 1);  // of the link that leads here
         __global uint* inbox = inboxes + raya_box_at(link, nodes, start, box, RAYA_PACKET_WORDS);
         __global uint* return_inbox = return_inboxes + raya_box_at(link, nodes, start, box, RAYA_RETURN_WORDS);
-        uint left, returns_left;
-        used += empty_inbox(inbox, queue, used, capacity, new_packets, tight, goals, &left);
-        home_used += pass_returns(return_inbox, root ? home_box : home_box + RAYA_RETURN_WORDS, home_used, root ? host_capacity : box, &returns_left);
+        const uint left = empty_inbox(inbox, &queue, goals);
+        uint returns_left;
+        home_used += pass_returns(return_inbox, homeward, home_used, root ? run->host : box, &returns_left);
         node_barrier();
         if (item) continue;
         inbox[0] = left;
@@ -108,9 +121,9 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     } else {
         status[RAYA_STATUS_RETURN_OUTBOX + home] = home_used;
     }
-    status[RAYA_STATUS_QUEUE] = used;
-    status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], used);
+    status[RAYA_STATUS_QUEUE] = queue.used;
+    status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], queue.used);
     // The host has looked before this kernel: what is counted from here on is for its next look.
-    status[RAYA_STATUS_PROGRESS] = used - before + home_used - homeward;
+    status[RAYA_STATUS_PROGRESS] = queue.used - before + home_used - home_before;
     status[RAYA_STATUS_CYCLES] = status[RAYA_STATUS_CYCLES + 1] = 0;
 }

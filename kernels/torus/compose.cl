@@ -1,7 +1,9 @@
-// compose: adds up each pixel's contributions, which came to the root in any order and were put into that of the pixel's ray tree by the host:
+// compose: adds up each pixel's contributions, which came to the root in any order and were put into that of
+// the pixel's ray tree by the host:
 //
-//     pixel = c1 w1, then c2 w2 + pixel, and so on, each step rounded once, as the ring machine adds them (kernels/README.md, Shading)
+//     pixel = c1 w1, then c2 w2 + pixel, and so on, each step rounded once
 //
+// as the ring machine adds them (kernels/README.md, Shading).
 // Work-item i of n takes pixels i, i + n, ... One lane.
 #include "kernels/geometry/vec.clh"
 

@@ -1,16 +1,17 @@
 // inject: nodes make the packets of primary rays, as long as their queues are short.
 //
-// One work-group is one node. Where the root makes all rays, it takes all pixels in turn and the other nodes do nothing. Else every node makes the
-// rays that enter the box at one of its voxels: it looks at the window of pixels where they must lie, which the host has given it, and keeps those
-// that do. Rays that miss the box belong to the row's node: row mod nodes.
+// One work-group is one node. Where the root makes all rays, it takes all pixels in turn and the other nodes do
+// nothing. Else every node makes the rays that enter the box at one of its voxels: it looks at the window of
+// pixels where they must lie, which the host has given it, and keeps those that do. Rays that miss the box belong
+// to the row's node: row mod nodes.
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
-//         make their rays and find their first voxels                                     (shading/camera.clh, grid/walk.clh)
+//         make their rays and find their first voxels                      (shading/camera.clh, grid/walk.clh)
 //         count the node's own; where they do not all fit, keep the first that do
 //         put them into the queue; the next pixel is the first that has to wait
 //
-// Rays are made until an eighth of the queue is in use, and never in the room that a ray's tree asks for: packets that arrive and packets that hits turn
-// into find room.
+// Rays are made until an eighth of the queue is in use, and never in the room that a ray's tree asks for: packets that
+// arrive and packets that hits turn into find room.
 #include "kernels/shading/camera.clh"
 #include "kernels/torus/flight.clh"
 
@@ -24,7 +25,8 @@ typedef struct {
 
 static inline uint rows_of_window(node_words header) { return header->window[1] - header->window[0]; }
 
-// How many rows the node looks at: those of its window, then those whose misses are its own; the root all rows, if it makes all rays.
+// How many rows the node looks at: those of its window, then those whose misses are its own; the root
+// all rows, if it makes all rays.
 static inline uint rows_of(const node* n, int root) {
     const node_words header = (node_words)n->memory;
     const uint height = header->job.mapping.height, nodes = raya_nodes(n->torus);
@@ -81,74 +83,77 @@ static inline primaries make_primaries(const node* n, pixel_row row, uint first,
     return p;
 }
 
-static inline void put_primary(__global uint* packet, const primaries* p, uint lane) {
+static inline void put_primary(__global raya_packet* packet, const primaries* p, uint lane) {
     lanes_index pixel, place;
     const lanes_vec o = lanes_of_vec(p->r.origin), d = lanes_of_vec(p->r.direction);
     lanes_real limit;
     pixel.all = p->pixel;
     place.all = p->place;
     limit.all = p->r.limit;
-    packet[RAYA_PACKET_PIXEL] = pixel.lane[lane];
-    packet[RAYA_PACKET_STATE] = RAYA_KIND_PRIMARY | RAYA_STATE_FRESH;
-    packet[RAYA_PACKET_PATH] = 0;
-    packet[RAYA_PACKET_WEIGHT] = as_uint(1.0f);
-    packet[RAYA_PACKET_VOXEL] = place.lane[lane];
-    packet[RAYA_PACKET_ORIGIN] = as_uint(o.x.lane[lane]);
-    packet[RAYA_PACKET_ORIGIN + 1] = as_uint(o.y.lane[lane]);
-    packet[RAYA_PACKET_ORIGIN + 2] = as_uint(o.z.lane[lane]);
-    packet[RAYA_PACKET_DIRECTION] = as_uint(d.x.lane[lane]);
-    packet[RAYA_PACKET_DIRECTION + 1] = as_uint(d.y.lane[lane]);
-    packet[RAYA_PACKET_DIRECTION + 2] = as_uint(d.z.lane[lane]);
-    packet[RAYA_PACKET_LIMIT] = as_uint(limit.lane[lane]);
-    packet[RAYA_PACKET_FOUND] = RAYA_NO_VOXEL;
+    packet->head.pixel = pixel.lane[lane];
+    packet->head.state = RAYA_KIND_PRIMARY | RAYA_STATE_FRESH;
+    packet->head.path = 0;
+    packet->head.weight = 1.0f;
+    packet->head.carries.nearest.voxel = RAYA_NO_VOXEL;
+    packet->head.voxel = place.lane[lane];
+    put_vec(packet->origin, &o, lane);
+    put_vec(packet->direction, &d, lane);
+    packet->limit = limit.lane[lane];
 }
 
-// Puts the lanes' own rays behind those of the work-items before this one, as many as there is room for. Gives the number in the row of the first
-// pixel that has to wait, `end` if none does.
-static inline uint put_primaries(const primaries* p, __global uint* queue, shared_words shared, uint behind, uint room, uint first, uint end) {
+// Where a node puts its primary rays, and what its work-items share while they do.
+typedef struct {
+    __global raya_packet* packets;  // its queue
+    uint most;                      // packets that may be in it
+    shared_words shared;            // RAYA_COUNT_WORDS
+    shared_words own;               // rays of each work-item, and the next pixel to look at
+} injection;
+
+// Puts the lanes' own rays, of pixels `first` to `end` - 1 of the row, into the queue from slot `at` on, as many as
+// there is room for. Returns the number in the row of the first pixel that has to wait, `end` if none does.
+static inline uint put_primaries(const primaries* p, const injection* to, uint at, uint first, uint end) {
     lanes_index own, meets;
     own.truth = p->own;
     meets.truth = p->meets;
     uint met = 0, made = 0, waits = end;
-    const uint used = shared[RAYA_SHARED_USED];
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!own.lane[lane]) continue;
-        if (behind + made >= room) {
+        if (at + made >= to->most) {
             waits = first + lane;
             break;
         }
-        put_primary(queue + (size_t)(used + behind + made) * RAYA_PACKET_WORDS, p, lane);
+        put_primary(to->packets + at + made, p, lane);
         ++made;
         met += meets.lane[lane] & 1u;
     }
-    count_shared(shared, RAYA_SHARED_MADE + RAYA_KIND_PRIMARY, made);
-    count_shared(shared, RAYA_SHARED_PROGRESS, made);
-    count_shared(shared, RAYA_SHARED_EVENTS + 2 * RAYA_PRIMARY, made);
-    count_shared(shared, RAYA_SHARED_EVENTS + 2 * RAYA_WALKS, met);
+    count_shared(to->shared, RAYA_COUNT_MADE + RAYA_KIND_PRIMARY, made);
+    count_shared(to->shared, RAYA_COUNT_PROGRESS, made);
+    count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_PRIMARY, made);
+    count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_WALKS, met);
     return waits;
 }
 
-// Makes rays of the row from its pixel `at` on until the queue has `most` packets; gives the next pixel to look at. Has barriers.
-static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, __global uint* queue, shared_words shared,
-                            shared_words own, uint most) {
+// Makes rays of the row from its pixel `at` on until the queue has `most` packets; returns the next pixel to look at.
+// Has barriers.
+static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, const injection* to) {
     const uint item = get_local_id(0);
-    shared_words next = own + RAYA_GROUP;
-    while (at < row.count && shared[RAYA_SHARED_USED] < most) {
-        const uint first = at + item * RAYA_LANES, end = min(row.count, at + RAYA_STEP), room = most - shared[RAYA_SHARED_USED];
+    shared_words used = to->shared + RAYA_COUNT_USED, next = to->own + RAYA_GROUP;
+    while (at < row.count && *used < to->most) {
+        const uint first = at + item * RAYA_LANES, end = min(row.count, at + RAYA_STEP), before = *used;
         const primaries p = make_primaries(n, row, first, stride);
-        own[item] = mask_count(p.own);
+        to->own[item] = mask_count(p.own);
         if (item == 0) *next = end;
         node_barrier();
-        uint behind = 0, all = 0;
+        uint behind = 0, all = 0;  // rays of the work-items before this one, of all
         for (uint i = 0; i < RAYA_GROUP; ++i) {
-            if (i < item) behind += own[i];
-            all += own[i];
+            if (i < item) behind += to->own[i];
+            all += to->own[i];
         }
-        const uint waits = put_primaries(&p, queue, shared, behind, room, first, end);
+        const uint waits = put_primaries(&p, to, before + behind, first, end);
         if (waits < end) atomic_min(next, waits);
         node_barrier();
         at = *next;
-        if (item == 0) shared[RAYA_SHARED_USED] += min(all, room);
+        if (item == 0) *used = min(before + all, to->most);
         node_barrier();
     }
     return at;
@@ -157,38 +162,38 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void inject(__global const uint* restrict memories,  // as for trace_voxel, and all that is not explained here
             __global const uint* restrict starts,
-            const uint capacity,
-            const uint stride,                       // pixels offset, offset + stride, ... are traced, counted row by row
-            const uint offset,
-            const uint root,                         // 1: the root makes all rays; 0: every node its own
-            __local uint* local_words,               // RAYA_SHARED_WORDS + L + 1, then, where RAYA_WORDS_LOCAL is 1, the words of a node
-            __global uint* restrict queues,
+            __global const raya_run* restrict run,
+            __local uint* local_words,               // RAYA_COUNT_WORDS + L + 1, then, where RAYA_WORDS_LOCAL is 1,
+                                                     // the words of a node
+            __global raya_packet* restrict queues,
             __global uint* restrict status,
             __global ulong* restrict events,
             __global ulong* restrict made,
             __global ulong* restrict ended)
 {
-    const uint number = get_group_id(0), item = get_local_id(0);
-    shared_words shared = local_words, own = local_words + RAYA_SHARED_WORDS;
+    const uint number = get_group_id(0), item = get_local_id(0), capacity = run->queue;
+    injection to;
+    to.packets = queues + (size_t)number * capacity;
+    to.shared = local_words;
+    to.own = local_words + RAYA_COUNT_WORDS;
     status += (size_t)number * RAYA_STATUS_WORDS;
-    open_shared(shared, status[RAYA_STATUS_QUEUE]);
-    const node n = open_node(memories + starts[number], starts[number + 1] - starts[number], local_words + RAYA_SHARED_WORDS + RAYA_GROUP + 1);
-    __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
+    open_shared(to.shared, status[RAYA_STATUS_QUEUE]);
+    const node n = open_node(memories, starts, local_words + RAYA_COUNT_WORDS + RAYA_GROUP + 1);
     const uint room = raya_room_of_ray(raya_most_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
-    const uint most = min(max(capacity / 8, 1u), capacity - room), rows = rows_of(&n, root);
+    to.most = min(max(capacity / 8, 1u), capacity - room);
+    const uint root = run->root_injects, stride = run->stride, rows = rows_of(&n, root);
     uint i = status[RAYA_STATUS_NEXT_ROW], at = status[RAYA_STATUS_NEXT_COLUMN];
     while (i < rows) {
-        const pixel_row row = row_of(&n, i, stride, offset, root);
-        at = make_row(&n, row, at, stride, queue, shared, own, most);
+        const pixel_row row = row_of(&n, i, stride, run->offset, root);
+        at = make_row(&n, row, at, stride, &to);
         if (at < row.count) break;
         at = 0;
         ++i;
     }
     node_barrier();
-    if (item == 0) {
-        status[RAYA_STATUS_NEXT_ROW] = i;
-        status[RAYA_STATUS_NEXT_COLUMN] = at;
-        status[RAYA_STATUS_ROWS] = rows;
-        report_counts(n.memory, shared, status, events + (size_t)number * RAYA_EVENTS, made + (size_t)number * RAYA_KINDS, ended + (size_t)number * RAYA_KINDS);
-    }
+    if (item) return;
+    status[RAYA_STATUS_NEXT_ROW] = i;
+    status[RAYA_STATUS_NEXT_COLUMN] = at;
+    status[RAYA_STATUS_ROWS] = rows;
+    report_counts(&n, to.shared, status, events, made, ended);
 }

@@ -1,5 +1,5 @@
-// route: rays that are in voxels of other nodes go into the outbox of the link that leads towards them; returns go into that of the link home, in the
-// root to the host (Yoshitani & Yamazaki, method: the communication task).
+// route: rays that are in voxels of other nodes go into the outbox of the link that leads towards them; returns go into
+// that of the link home, in the root to the host (Yoshitani & Yamazaki, method: the communication task).
 //
 // One work-group is one node. L packets at a time, in the order of the queue:
 //
@@ -12,53 +12,55 @@
 #include "kernels/torus/moves.clh"
 
 // Where a packet of this node goes.
-static inline uint goal_of(const node* n, uint16 packet) {
-    const uint kind = raya_state_kind(packet.s1), word = packet.s7;
+static inline uint goal_of(const node* n, const raya_head* packet) {
+    const uint kind = raya_state_kind(packet->state);
     if (kind == RAYA_KIND_NONE) return RAYA_GONE;
     if (kind == RAYA_KIND_RETURN) return RAYA_HOME;
-    if (word == RAYA_NO_VOXEL) return RAYA_STAYS;
-    const raya_place voxel = raya_unpack_place(word);
+    if (packet->voxel == RAYA_NO_VOXEL) return RAYA_STAYS;
+    const raya_place voxel = raya_unpack_place(packet->voxel);
     if (is_own(n, voxel)) return RAYA_STAYS;
     const raya_place to = holder_of(n, voxel);
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
-void route(__global const uint* restrict memories,  // as for trace_voxel
+void route(__global const uint* restrict memories,   // as for trace_voxel
            __global const uint* restrict starts,
-           const uint capacity,                     // packets that a queue holds
-           const uint box,                          // packets that a box holds
-           const uint host_capacity,                // returns that wait for the host at most
-           __local uint* local_words,               // RAYA_ROUTE_WORDS + L, then, where RAYA_WORDS_LOCAL is 1, the words of a node
-           __global uint* restrict queues,          // [node][capacity][16]
-           __global uint* restrict outboxes,        // of rays (kernels/shared/traffic.h)
+           __global const raya_run* restrict run,
+           __local uint* local_words,                // RAYA_ROUTE_WORDS + L, then, where RAYA_WORDS_LOCAL is 1, the
+                                                     // words of a node
+           __global raya_packet* restrict queues,    // [node][queue]
+           __global uint* restrict outboxes,         // of rays (kernels/shared/traffic.h)
            __global uint* restrict return_outboxes,
-           __global uint* restrict returns,         // [host_capacity][8]: those that have reached the root
-           __global uint* restrict status,          // [node][RAYA_STATUS_WORDS]
-           __global ulong* restrict ended)          // [node][RAYA_KINDS], added to
+           __global raya_head* restrict returns,     // [host]: those that have reached the root
+           __global uint* restrict status,           // [node][RAYA_STATUS_WORDS]
+           __global ulong* restrict ended)           // [node][RAYA_KINDS], added to
 {
-    const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0);
-    __local uint *used = local_words, *limit = used + RAYA_GOALS, *goals = limit + RAYA_GOALS, *moved = goals + RAYA_GROUP;
+    const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0), box = run->box;
+    __local uint *used = local_words, *limit = used + RAYA_GOALS, *goals = limit + RAYA_GOALS;
+    __local uint* moved = goals + RAYA_GROUP;
     status += (size_t)number * RAYA_STATUS_WORDS;
-    __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
+    __global raya_packet* const queue = queues + (size_t)number * run->queue;
     const uint count = status[RAYA_STATUS_QUEUE];
-    const node n = open_node(memories + starts[number], starts[number + 1] - starts[number], local_words + RAYA_ROUTE_WORDS + RAYA_GROUP);
+    const node n = open_node(memories, starts, local_words + RAYA_ROUTE_WORDS + RAYA_GROUP);
     const int root = number == RAYA_ROOT;
-    const uint home = raya_home_link(n.torus, number), home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
-    __global uint* home_box = root ? returns : return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);
+    const uint home = raya_home_link(n.torus, number);
+    const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
+    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);
+    __global raya_head* const homeward = root ? returns : returns_in(home_box);
     if (item == 0) {
         for (uint link = 0; link < RAYA_LINKS; ++link) {
             used[link] = status[RAYA_STATUS_OUTBOX + link];
             limit[link] = box;
         }
         used[RAYA_HOME] = status[home_status];
-        limit[RAYA_HOME] = root ? host_capacity : box;
+        limit[RAYA_HOME] = root ? run->host : box;
         used[RAYA_STAYS] = used[RAYA_GONE] = *moved = 0;
     }
     for (uint first = 0; first < count; first += RAYA_GROUP) {
         const uint slot = first + item;
-        const uint16 packet = packet_at(queue, min(slot, count - 1));
-        uint goal = slot < count ? goal_of(&n, packet) : RAYA_GONE;
+        const raya_packet packet = queue[min(slot, count - 1)];
+        uint goal = slot < count ? goal_of(&n, &packet.head) : RAYA_GONE;
         goals[item] = goal;
         node_barrier();
         const int fits = goal >= RAYA_STAYS || used[goal] + rank_among(goals, goal) < limit[goal];
@@ -68,9 +70,10 @@ void route(__global const uint* restrict memories,  // as for trace_voxel
         node_barrier();
         const uint place = goal < RAYA_GONE ? used[goal] + rank_among(goals, goal) : 0;
         // Packets that stay move to a slot that this loop has read already.
-        if (goal == RAYA_STAYS) put_packet(packet, queue, place);
-        if (goal == RAYA_HOME) vstore8(packet.lo, place + !root, home_box);  // behind a box's header
-        if (goal < RAYA_LINKS) put_packet(packet, outboxes + raya_box_at(goal, nodes, number, box, RAYA_PACKET_WORDS), 1 + place);
+        if (goal == RAYA_STAYS) queue[place] = packet;
+        if (goal == RAYA_HOME) homeward[place] = packet.head;
+        if (goal < RAYA_LINKS)
+            rays_in(outboxes + raya_box_at(goal, nodes, number, box, RAYA_PACKET_WORDS))[place] = packet;
         node_barrier();
         if (item == 0) {
             for (uint g = 0; g < RAYA_GONE; ++g) {

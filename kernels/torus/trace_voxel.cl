@@ -1,35 +1,39 @@
-// trace_voxel: every node tests the ray packets in its queue against the objects of the voxels that they are in (Yoshitani & Yamazaki, method).
+// trace_voxel: every node tests the ray packets in its queue against the objects of the voxels that they are in
+// (Yoshitani & Yamazaki, method).
 //
 // One work-group is one node. Its work-items take V packets of the queue at a time, one in each lane:
 //
 //     for each voxel of this node that lanes are in:
-//         reserve room for what these packets may turn into (raya_room_of_ray); packets without room wait for the next superstep
+//         reserve room for what these packets may turn into (raya_room_of_ray); packets without room wait for the
+//             next superstep
 //         test the voxel's objects for the rays of these lanes                            (geometry/)
-//         a ray whose nearest hit lies before its way out of the voxel, or that has left the box, is done: it turns into a return
-//             packet and the packets of the rays that follow, or a return packet with the background (torus/shade_packets.clh)
+//         a ray whose nearest hit lies before its way out of the voxel, or that has left the box, is done: it turns
+//             into a return packet and the packets of the rays that follow (torus/shade_packets.clh), or a return
+//             packet with the background
 //         a shadow ray that meets an object ends; one that comes to its light turns into a return packet
 //         all others go on to the next voxel                                              (grid/walk.clh)
 //
-// Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across a voxel's side (kernels/grid/walk.clh). They visit
-// all voxels in the order of their numbers, remember where their nearest hit was found, and are shaded there.
+// Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across
+// a voxel's side (kernels/grid/walk.clh). They visit all voxels in the order of their numbers, remember where
+// their nearest hit was found, and are shaded there.
 // Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64.
 #include "kernels/torus/outcome.clh"
 #include "kernels/torus/shade_packets.clh"
 
 // The lanes of m whose packets have room for what they may turn into, and how much is reserved for them.
-static inline mask reserve(const node* n, const flight* f, mask m, uint capacity, uint tight, uint* reserved) {
+static inline mask reserve(const node* n, const flight* f, mask m, uint* reserved) {
     lanes_index chosen, level;
     chosen.truth = m & mask_not(is_shadow(f));
     level.all = levels_of(f);
     const uint each = raya_most_new_packets(((job_words)n->memory)->lights);
-    shared_words all = &f->shared[RAYA_SHARED_RESERVED];
+    shared_words all = &f->shared[RAYA_COUNT_RESERVED];
     *reserved = 0;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!chosen.lane[lane]) continue;
-        const uint need = tight ? each : raya_room_of_ray(each, RAYA_BOUNCES, level.lane[lane]);
+        const uint need = f->tight ? each : raya_room_of_ray(each, RAYA_BOUNCES, level.lane[lane]);
         chosen.lane[lane] = 0;
-        if (*all + need > capacity) continue;
-        if (shared_add(all, each) + need > capacity) {
+        if (*all + need > f->capacity) continue;
+        if (shared_add(all, each) + need > f->capacity) {
             shared_add(all, -each);
             continue;
         }
@@ -54,8 +58,8 @@ static inline void move_packets(flight* f, mask m, index place) {
     to.all = place;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!chosen.lane[lane]) continue;
-        own_slot(f, lane)[RAYA_PACKET_VOXEL] = to.lane[lane];
-        own_slot(f, lane)[RAYA_PACKET_STATE] |= RAYA_STATE_FRESH;
+        own_slot(f, lane)->head.voxel = to.lane[lane];
+        own_slot(f, lane)->head.state |= RAYA_STATE_FRESH;
     }
 }
 
@@ -66,86 +70,88 @@ static inline void arrive(flight* f, mask m) {
     chosen.truth = m;
     colour = lanes_of_vec(vec_of(num_all(0.0f), num_all(0.0f), num_all(0.0f)));
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
-        if (!chosen.lane[lane]) continue;
-        __global const uint* p = own_slot(f, lane) + RAYA_PACKET_COLOUR;
-        colour.x.lane[lane] = as_float(p[0]);
-        colour.y.lane[lane] = as_float(p[1]);
-        colour.z.lane[lane] = as_float(p[2]);
+        if (chosen.lane[lane]) take_vec(&colour, lane, own_slot(f, lane)->head.carries.colour);
     }
-    put_returns(f, m, vec_of_lanes(colour), f->weight.all, f->state.all >> (index)(RAYA_STATE_LIGHT_SHIFT));
+    const index light = f->state.all >> (index)(RAYA_STATE_LIGHT_SHIFT);
+    put_return_packets(f, m, vec_of_lanes(colour), f->weight.all, light);
     count_event(f, RAYA_LIT, m);
 }
 
 // Treats the packets of the lanes m, all in the voxel `place` of this node or all outside the box.
-static inline void treat(const node* n, flight* f, mask m, uint place, uint capacity, uint tight) {
+static inline void treat(const node* n, flight* f, mask m, uint place) {
     const uint before = f->appended;
     uint reserved;
-    m = reserve(n, f, m, capacity, tight, &reserved);
+    m = reserve(n, f, m, &reserved);
     if (!mask_any(m)) return;
     const int outside = place == RAYA_NO_VOXEL;
-    const voxel_words voxel = own_voxel(n, raya_unpack_place(outside ? raya_pack_place(n->place.at[0], n->place.at[1], n->place.at[2]) : place));
+    const voxel_words voxel = own_voxel(n, outside ? n->place : raya_unpack_place(place));
     const objects_words all = outside ? &((job_words)n->memory)->objects : &voxel->objects;
     const ray r = {vec_of_lanes(f->origin), vec_of_lanes(f->direction),
                    choose(m, choose(is_shadow(f), f->limit.all, num_const(RAYA_FAR)), num_all(0.0f))};
     const hit h = closest_hit(n->memory, all, r);
     count_tests(f, m, all);
-    count_shared(f->shared, RAYA_SHARED_PROGRESS, mask_count(m));
+    count_shared(f->shared, RAYA_COUNT_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));
     const mask wide = m & has_flag(f, RAYA_STATE_WIDE);
     outcome o = walk_on(n, f, r, m & mask_not(wide), place, h);
     if (mask_any(wide)) o = both(o, tour_on(n, f, voxel, wide, place, h), wide);
     move_packets(f, o.moves, o.place);
     const vec background = vec_all(((job_words)n->memory)->background);
-    if (mask_any(o.missed)) put_returns(f, o.missed, background, f->weight.all, (index)(0));
+    if (mask_any(o.missed)) put_return_packets(f, o.missed, background, f->weight.all, (index)(0));
     if (mask_any(o.arrived)) arrive(f, o.arrived);
     if (mask_any(o.struck)) shade_packets(n, all, f, o.struck, h);
     count_event(f, RAYA_SHADOW_HITS, o.stopped);
     end_packets(f, o.struck | o.missed | o.stopped | o.arrived);
-    if (reserved) shared_add(&f->shared[RAYA_SHARED_RESERVED], f->appended - before - reserved);
+    if (reserved) shared_add(&f->shared[RAYA_COUNT_RESERVED], f->appended - before - reserved);
 }
 
-// Treats the packets of the queue's slots first .. end - 1, at most V, that are in voxels of this node or outside the box.
-static inline void treat_slots(const node* n, __global uint* queue, shared_words shared, uint first, uint end, uint capacity, uint tight) {
-    flight f = load_flight(queue, shared, first, end);
+// Treats the packets of the queue's slots first .. end - 1, at most V, that are in voxels
+// of this node or outside the box.
+static inline void treat_slots(const node* n, flight* f, uint first, uint end) {
+    load_flight(f, first, end);
     lanes_index waiting;
-    const index kind = kinds_of(&f);
+    const index kind = kinds_of(f);
     waiting.truth = (kind != (index)(RAYA_KIND_NONE)) & (kind != (index)(RAYA_KIND_RETURN));
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!waiting.lane[lane]) continue;
-        const uint place = f.voxel.lane[lane];
-        const mask here = waiting.truth & (f.voxel.all == (index)(place));
+        const uint place = f->voxel.lane[lane];
+        const mask here = waiting.truth & (f->voxel.all == (index)(place));
         waiting.truth &= mask_not(here);
-        if (place == RAYA_NO_VOXEL || is_own(n, raya_unpack_place(place))) treat(n, &f, here, place, capacity, tight);
+        if (place == RAYA_NO_VOXEL || is_own(n, raya_unpack_place(place))) treat(n, f, here, place);
     }
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void trace_voxel(__global const uint* restrict memories,  // the words of all nodes (kernels/shared/node.h)
                  __global const uint* restrict starts,    // [nodes + 1]: where each node's words start
-                 const uint capacity,                     // packets that a queue holds
-                 const uint tight,                        // 1: rays need room for what they turn into at once, not for all their tree
-                 __local uint* local_words,               // RAYA_SHARED_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words of a node
-                 __global uint* restrict queues,          // [node][capacity][16] (kernels/shared/traffic.h)
+                 __global const raya_run* restrict run,   // (kernels/shared/traffic.h)
+                 const uint tight,                        // 1: rays need room for what they turn into at once, not for
+                                                          // all their tree
+                 __local uint* local_words,               // RAYA_COUNT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the
+                                                          // words of a node
+                 __global raya_packet* restrict queues,   // [node][queue]
                  __global uint* restrict status,          // [node][RAYA_STATUS_WORDS]
                  __global ulong* restrict events,         // [node][RAYA_EVENTS], added to
                  __global ulong* restrict made,           // [node][RAYA_KINDS]: packets, added to
                  __global ulong* restrict ended)          // [node][RAYA_KINDS], added to
 {
     const uint number = get_group_id(0), item = get_local_id(0);
-    shared_words shared = local_words;
     status += (size_t)number * RAYA_STATUS_WORDS;
     const uint count = status[RAYA_STATUS_QUEUE];
-    open_shared(shared, count);
-    const node n = open_node(memories + starts[number], starts[number + 1] - starts[number], local_words + RAYA_SHARED_WORDS);
-    __global uint* queue = queues + (size_t)number * capacity * RAYA_PACKET_WORDS;
+    flight f;
+    f.queue = queues + (size_t)number * run->queue;
+    f.capacity = run->queue;
+    f.tight = tight;
+    f.shared = local_words;
+    open_shared(f.shared, count);
+    const node n = open_node(memories, starts, local_words + RAYA_COUNT_WORDS);
     for (;;) {
         // The packets that came last first: among them are the deepest rays, which ask for the least room.
-        const uint taken = shared_add(&shared[RAYA_SHARED_NEXT], RAYA_LANES);
+        const uint taken = shared_add(&f.shared[RAYA_COUNT_NEXT], RAYA_LANES);
         if (taken >= count) break;
         const uint end = count - taken;
-        treat_slots(&n, queue, shared, end > RAYA_LANES ? end - RAYA_LANES : 0, end, capacity, tight);
+        treat_slots(&n, &f, end > RAYA_LANES ? end - RAYA_LANES : 0, end);
     }
     node_barrier();
-    if (item == 0)
-        report_counts(n.memory, shared, status, events + (size_t)number * RAYA_EVENTS, made + (size_t)number * RAYA_KINDS, ended + (size_t)number * RAYA_KINDS);
+    if (item == 0) report_counts(&n, f.shared, status, events, made, ended);
 }

@@ -93,9 +93,9 @@ inline std::string ring_image(const Scene& scene, const TorusCase& c) {
 /// Adds a packet's words to those of each link on its way by the rule of the ways; `words`: [node][link].
 inline void add_way(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
     for (std::uint32_t node = p.source; node != p.destination;) {
-        const bool home = raya_state_kind(p.head[RAYA_PACKET_STATE]) == RAYA_KIND_RETURN;
+        const bool home = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
         const std::uint32_t link = home ? raya_home_link(torus, node) : raya_next_link(torus, node, p.destination);
-        words.at(std::size_t{node} * RAYA_LINKS + link) += raya_packet_words(p.head[RAYA_PACKET_STATE]);
+        words.at(std::size_t{node} * RAYA_LINKS + link) += raya_packet_words(p.head.state);
         node = raya_link_end(torus, node, link);
     }
 }

@@ -17,7 +17,7 @@ namespace {
 // refraction: what the sorting must find again.
 class TreeWalk {
   public:
-    TreeWalk(SplitMix& random, std::vector<ReturnPacket>& to, std::uint32_t pixel)
+    TreeWalk(SplitMix& random, std::vector<raya_head>& to, std::uint32_t pixel)
         : random_(random), to_(to), pixel_(pixel) {}
 
     void ray(std::uint32_t path, std::uint32_t level, std::uint32_t deepest) {
@@ -35,31 +35,30 @@ class TreeWalk {
 
   private:
     void add(std::uint32_t path, std::uint32_t level, std::uint32_t light) {
-        ReturnPacket p{};
-        p[RAYA_PACKET_PIXEL] = pixel_;
-        p[RAYA_PACKET_STATE] = raya_state(RAYA_KIND_RETURN, level, light) | (below(2) ? RAYA_STATE_FRESH : 0);
-        p[RAYA_PACKET_PATH] = path;
-        for (const int word :
-             {int{RAYA_PACKET_WEIGHT}, int{RAYA_PACKET_COLOUR}, RAYA_PACKET_COLOUR + 1, RAYA_PACKET_COLOUR + 2})
-            p[static_cast<std::size_t>(word)] = std::bit_cast<std::uint32_t>(static_cast<float>(1 + below(1 << 23)));
+        raya_head p{};
+        p.pixel = pixel_;
+        p.state = raya_state(RAYA_KIND_RETURN, level, light) | (below(2) ? RAYA_STATE_FRESH : 0);
+        p.path = path;
+        p.weight = static_cast<float>(1 + below(1 << 23));
+        for (float& colour : p.carries.colour) colour = static_cast<float>(1 + below(1 << 23));
         to_.push_back(p);
     }
 
     SplitMix& random_;
-    std::vector<ReturnPacket>& to_;
+    std::vector<raya_head>& to_;
     std::uint32_t pixel_;
 };
 
-void shuffle(std::vector<ReturnPacket>& packets, SplitMix& random) {
+void shuffle(std::vector<raya_head>& packets, SplitMix& random) {
     for (std::size_t i = packets.size(); i > 1; --i) std::swap(packets[i - 1], packets[random_below(random, i)]);
 }
 
-std::vector<float> colours_of(const std::vector<ReturnPacket>& packets) {
+std::vector<float> colours_of(const std::vector<raya_head>& packets) {
     std::vector<float> colours;
-    for (const ReturnPacket& p : packets)
-        for (const int word :
-             {RAYA_PACKET_COLOUR + 0, RAYA_PACKET_COLOUR + 1, RAYA_PACKET_COLOUR + 2, RAYA_PACKET_WEIGHT + 0})
-            colours.push_back(std::bit_cast<float>(p[static_cast<std::size_t>(word)]));
+    for (const raya_head& p : packets) {
+        colours.insert(colours.end(), std::begin(p.carries.colour), std::end(p.carries.colour));
+        colours.push_back(p.weight);
+    }
     return colours;
 }
 
@@ -106,14 +105,14 @@ TEST_CASE("contributions come in the order of a depth-first walk through their p
         CAPTURE(seed, i);
         SplitMix random(seed + i);
         const std::uint32_t pixels = 1 + random_below(random, 12);
-        std::vector<ReturnPacket> walked;
+        std::vector<raya_head> walked;
         std::vector<std::uint32_t> starts = {0};
         for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
             TreeWalk walk(random, walked, pixel);
             if (walk.below(4)) walk.ray(0, 0, walk.below(6) ? walk.below(6) : 31);
             starts.push_back(static_cast<std::uint32_t>(walked.size()));
         }
-        std::vector<ReturnPacket> returns = walked;
+        std::vector<raya_head> returns = walked;
         shuffle(returns, random);
         const Contributions sorted = sort_contributions(returns, pixels);
         CHECK(sorted.starts == starts);
@@ -125,13 +124,13 @@ TEST_CASE("a contribution that comes twice, or to no pixel, is noticed", "[torus
     SplitMix random(5);
     for (int i = 0; i < 100; ++i) {
         CAPTURE(i);
-        std::vector<ReturnPacket> returns;
+        std::vector<raya_head> returns;
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel) TreeWalk(random, returns, pixel).ray(0, 0, 3);
         CHECK_NOTHROW(sort_contributions(returns, 4));
         CHECK_THROWS_AS(sort_contributions(returns, 3), std::logic_error);
-        ReturnPacket twice = returns[random_below(random, returns.size())];
-        twice[RAYA_PACKET_STATE] ^= RAYA_STATE_FRESH;  // says how it travels, not which it is
-        twice[RAYA_PACKET_WEIGHT] ^= 1;
+        raya_head twice = returns[random_below(random, returns.size())];
+        twice.state ^= RAYA_STATE_FRESH;  // says how it travels, not which it is
+        twice.weight += 1;
         returns.push_back(twice);
         shuffle(returns, random);
         CHECK_THROWS_AS(sort_contributions(returns, 4), std::logic_error);

@@ -24,7 +24,7 @@ Recorded record(Session& session, const Scene& scene, const TorusCase& c) {
     return r;
 }
 
-std::uint32_t state_of(const PacketRecord& p) { return p.head[RAYA_PACKET_STATE]; }
+std::uint32_t state_of(const PacketRecord& p) { return p.head.state; }
 std::uint32_t kind_of(const PacketRecord& p) { return raya_state_kind(state_of(p)); }
 bool is_wide(const PacketRecord& p) { return state_of(p) & RAYA_STATE_WIDE; }
 
@@ -35,7 +35,7 @@ std::uint64_t sum(const std::vector<std::uint64_t>& values) {
 // Which ray of which pixel: the records of one ray are the stages of its way.
 using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
 RayKey key_of(const PacketRecord& p) {
-    return {p.head[RAYA_PACKET_PIXEL], p.head[RAYA_PACKET_PATH], raya_state_level(state_of(p)),
+    return {p.head.pixel, p.head.path, raya_state_level(state_of(p)),
             raya_state_light(state_of(p))};
 }
 
@@ -86,7 +86,7 @@ void check_traffic(const Recorded& r, const TorusSettings& s) {
 }
 
 std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
-    const raya_place at = raya_unpack_place(p.head[RAYA_PACKET_VOXEL]);
+    const raya_place at = raya_unpack_place(p.head.voxel);
     return raya_voxel(grid, at.at[0], at.at[1], at.at[2]);
 }
 
@@ -94,13 +94,13 @@ std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
 bool walks(const std::vector<PacketRecord>& way) {
     bool right = true;
     for (std::size_t i = 1; i < way.size(); ++i) {
-        const raya_place a = raya_unpack_place(way[i - 1].head[RAYA_PACKET_VOXEL]);
-        const raya_place b = raya_unpack_place(way[i].head[RAYA_PACKET_VOXEL]);
+        const raya_place a = raya_unpack_place(way[i - 1].head.voxel);
+        const raya_place b = raya_unpack_place(way[i].head.voxel);
         std::uint32_t steps = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const int step = static_cast<int>(b.at[axis]) - static_cast<int>(a.at[axis]);
             steps += static_cast<std::uint32_t>(std::abs(step));
-            const raya_place first = raya_unpack_place(way[0].head[RAYA_PACKET_VOXEL]);
+            const raya_place first = raya_unpack_place(way[0].head.voxel);
             const int way_so_far = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
             right = right && step * way_so_far >= 0;  // never back
         }

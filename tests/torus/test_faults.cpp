@@ -15,12 +15,11 @@ struct Fault {
 
 const Fault kFaults[] = {
     {"accept drops a packet",
-     {"torus/accept.cl", "if (goal == RAYA_TAKEN) put_packet(packet, queue, used + taken + rank);",
-      "if (goal == RAYA_TAKEN) { if (packet.s0 == 7) packet.s1 = 0; put_packet(packet, queue, used + taken + rank); "
-      "}"}},
+     {"torus/accept.cl", "packet.head.state &= ~RAYA_STATE_FRESH;",
+      "packet.head.state &= packet.head.pixel == 7 ? 0 : ~RAYA_STATE_FRESH;"}},
     {"accept takes a packet twice",
-     {"torus/accept.cl", "*left += number_of(goals, RAYA_LEFT_THERE);",
-      "*left += number_of(goals, RAYA_LEFT_THERE); if (first == 0 && used > 3) *left = 1;"}},
+     {"torus/accept.cl", "left += number_of(goals, RAYA_LEFT_THERE);",
+      "left += number_of(goals, RAYA_LEFT_THERE); if (first == 0 && queue->used > 3) left = 1;"}},
     {"route sends the wrong way",
      {"shared/torus.h", "raya_next_link(raya_torus t, raya_u32 from, raya_u32 to)",
       "raya_next_link(raya_torus t, raya_u32 to, raya_u32 from)"}},
@@ -30,7 +29,7 @@ const Fault kFaults[] = {
      {"torus/outcome.clh", "!= RAYA_NO_VOXEL && !nearer) return;",
       "!= RAYA_NO_VOXEL && !nearer && number > 100000) return;"}},
     {"a wide ray forgets its last voxel",
-     {"torus/outcome.clh", "if (next == p[", "if (next_of_tour(n->grid, next) == p["}},
+     {"torus/outcome.clh", "if (next == p->start)", "if (next_of_tour(n->grid, next) == p->start)"}},
     {"a wide ray starts one voxel behind",
      {"torus/node.clh", "const raya_place p = n->place;", "raya_place p = n->place; p.at[0] = 0;"}},
     {"hits behind the way out count", {"torus/outcome.clh", "(hits & (h.distance <= leaves))", "hits"}},
@@ -48,11 +47,11 @@ const Fault kFaults[] = {
      {"torus/inject.cl", "p.row = root ? i : in_window ? header->window[0] + i",
       "p.row = root ? i : in_window ? header->window[0] + i + 1"}},
     {"refraction takes the reflected path",
-     {"torus/shade_packets.clh", "transmit, f->path.all | turn);", "transmit, f->path.all);"}},
+     {"torus/shade_packets.clh", "f->path.all | (index)(0x80000000u) >> levels_of(f);", "f->path.all;"}},
     {"a light's number is one off",
      {"torus/shade_packets.clh", "shadow.light = (index)(l + 1);", "shadow.light = (index)(l);"}},
     {"no room is reserved",
-     {"torus/trace_voxel.cl", "if (*all + need > capacity) continue;", "chosen.lane[lane] = RAYA_TRUE; continue;"}},
+     {"torus/trace_voxel.cl", "if (*all + need > f->capacity) continue;", "chosen.lane[lane] = RAYA_TRUE; continue;"}},
 };
 
 struct Traffic {

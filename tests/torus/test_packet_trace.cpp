@@ -64,8 +64,13 @@ class Tree {
               const std::string& parent, std::uint32_t times) {
         static const char* const kKinds[] = {"", "primary", "reflected", "refracted", "shadow", "return"};
         for (std::uint32_t i = 0; i < times; ++i) {
-            PacketRecord record = {below(1000), below(65'536), below(65'536), {pixel, state, path}};
-            for (std::size_t word = 3; word < record.head.size(); ++word) record.head[word] = below(1u << 31);
+            PacketRecord record = {below(1000), below(65'536), below(65'536), {}};
+            record.head = {.pixel = pixel,
+                           .state = state,
+                           .path = path,
+                           .weight = static_cast<float>(below(1u << 31)),
+                           .carries = {.nearest = {below(1u << 31), below(1u << 31)}},
+                           .voxel = below(1u << 31)};
             sent_.push_back({record, kKinds[raya_state_kind(state)], name, parent});
         }
     }

@@ -106,8 +106,8 @@ TEST_CASE("of every fourth superstep the same packets are told as of all", "[tor
                 [&](const PacketRecord& p) {
                     if (p.superstep % 4 == 0)
                         packets.push_back(
-                            fmt::format("{} {} {} {}", p.superstep, p.source, p.destination,
-                                        fmt::join(p.head.begin(), p.head.begin() + RAYA_PACKET_COLOUR, " ")));
+                            fmt::format("{} {} {} {} {} {} {}", p.superstep, p.source, p.destination, p.head.pixel,
+                                        p.head.state, p.head.path, p.head.weight));
                     else
                         CHECK(every == 1);
                 },
@@ -125,7 +125,7 @@ TEST_CASE("the sample of packets has its size, and any packet may be in it", "[t
     const std::uint32_t all = 5 * TorusTrace::kMostPackets;
     for (std::uint32_t i = 0; i < all; ++i) {
         PacketRecord p{.superstep = i / 1000, .source = 0, .destination = 1};
-        p.head[RAYA_PACKET_STATE] = RAYA_KIND_SHADOW;
+        p.head.state = RAYA_KIND_SHADOW;
         seen.add_packet(p);
     }
     TorusResult result;
