@@ -48,9 +48,9 @@ class Boxes {
     void exchange(bool record) {
         session_.write("test", links_.outboxes(), out_);
         if (record)
-            links_.visit_new(status_, [&](std::uint32_t node, const std::uint32_t* packet) {
-                ++seen_[packet[0]];
-                CHECK(sources_[packet[0]] == node);
+            links_.visit_new(status_, [&](std::uint32_t node, const raya_head& packet) {
+                ++seen_[packet.pixel];
+                CHECK(sources_[packet.pixel] == node);
             });
         const std::vector<std::uint32_t> before = in_;
         std::vector<std::uint64_t> words(std::size_t{nodes_} * RAYA_LINKS, 5), expected = words;
