@@ -3,6 +3,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <type_traits>
@@ -15,6 +16,20 @@
 #include "host/cl/profile.hpp"
 
 namespace raya {
+
+/// A text as a template's argument.
+template <std::size_t Size>
+struct FixedText {
+    consteval FixedText(const char (&from)[Size]) { std::copy_n(from, Size, text); }
+    char text[Size]{};
+};
+
+/// A kernel's `const uint` parameter by its name, such as Uint<"begin">: another one does not compile in its place.
+template <FixedText Name>
+struct Uint {
+    static constexpr const char* kName = Name.text;
+    cl_uint value;
+};
 
 /// The parameter's name in the kernel's source; its number from 0 where the driver keeps no names.
 std::string argument_name(const cl::Kernel& kernel, cl_uint index);
@@ -30,6 +45,11 @@ std::string argument_text(const LocalMemory<T>& local) {
     return fmt::format("local, {} bytes", local.bytes());
 }
 
+template <FixedText Name>
+std::string argument_text(const Uint<Name>& number) {
+    return fmt::format("{}", number.value);
+}
+
 template <class T>
 std::string argument_text(const T& value) {
     if constexpr (std::is_arithmetic_v<T>)
@@ -41,7 +61,7 @@ std::string argument_text(const T& value) {
 }
 
 /// Args, in the kernel's order: `const Buffer<T>&` for an input, `Buffer<T>&` for an output, LocalMemory<T> for
-/// __local memory, and plain values such as cl_uint or cl_float for the rest.
+/// __local memory, Uint for a whole number, and plain values such as cl_float or an enum for the rest.
 template <class... Args>
 class Kernel {
   public:

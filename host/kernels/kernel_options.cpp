@@ -47,36 +47,32 @@ bool sphere_filter_holds(const NumberFormat& format, double extent) {
     return !format.is_fp32() && format.fraction_bits >= kFewestBits && extent <= room;
 }
 
-std::vector<std::string> format_options(const NumberFormat& format, const DeviceInfo& device) {
-    std::vector<std::string> all = {"-cl-std=CL1.2"};
-    if (!format.is_fp32()) {
-        all.push_back(fmt::format("-DRAYA_EXPONENT_BITS={}", format.exponent_bits));
-        all.push_back(fmt::format("-DRAYA_FRACTION_BITS={}", format.fraction_bits));
-        all.push_back(fmt::format("-DRAYA_TRUNCATE={:d}", format.truncates));
-    }
-    all.push_back(fmt::format("-DRAYA_EXACT_DIVIDE={:d}", device.correctly_rounded_divide_sqrt));
-    all.push_back(fmt::format("-DRAYA_EXACT_FMA={:d}", device.fused_multiply_add));
-    if (device.correctly_rounded_divide_sqrt) all.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
-    return all;
-}
-
 std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device) {
     check_kernel_options(options, device);
-    std::vector<std::string> all = format_options(options.format, device);
-    all.push_back(fmt::format("-DRAYA_LANES={}", options.lanes));
-    all.push_back(fmt::format("-DRAYA_GROUP={}", options.group_size));
-    all.push_back(fmt::format("-DRAYA_BOUNCES={}", options.bounces));
-    all.push_back(fmt::format("-DRAYA_WORDS_LOCAL={:d}", options.words_local));
-    all.push_back(fmt::format("-DRAYA_POLYGONS={:d}", options.polygons));
-    all.push_back(fmt::format("-DRAYA_PATCHES={:d}", options.patches));
-    all.push_back(fmt::format("-DRAYA_CONES={:d}", options.cones));
-    if (options.accel) all.emplace_back("-DRAYA_ACCEL=1");
-    if (options.filter) all.emplace_back("-DRAYA_FILTER=1");
+    const NumberFormat& format = options.format;
+    const bool exact_divide = options.exact_divide && device.correctly_rounded_divide_sqrt;
+    std::vector<std::string> all = {"-cl-std=CL1.2"};
+    const auto define = [&](const char* name, std::uint32_t value) {
+        all.push_back(fmt::format("-DRAYA_{}={}", name, value));
+    };
+    if (!format.is_fp32()) {
+        define("EXPONENT_BITS", static_cast<std::uint32_t>(format.exponent_bits));
+        define("FRACTION_BITS", static_cast<std::uint32_t>(format.fraction_bits));
+        define("TRUNCATE", format.truncates);
+    }
+    define("EXACT_DIVIDE", exact_divide);
+    define("EXACT_FMA", options.exact_fma && device.fused_multiply_add);
+    if (exact_divide) all.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
+    define("LANES", options.lanes);
+    define("GROUP", options.group_size);
+    define("BOUNCES", options.bounces);
+    define("WORDS_LOCAL", options.words_local);
+    define("POLYGONS", options.polygons);
+    define("PATCHES", options.patches);
+    define("CONES", options.cones);
+    if (options.accel) define("ACCEL", 1);
+    if (options.filter) define("FILTER", 1);
     return all;
 }
-
-std::vector<std::string> without_local_words() { return {"-DRAYA_WITHOUT_LOCAL_WORDS"}; }
-
-std::vector<std::string> without_exact_arithmetic() { return {"-DRAYA_WITHOUT_EXACT_ARITHMETIC"}; }
 
 }  // namespace raya

@@ -8,10 +8,11 @@
 
 namespace raya {
 
-/// Where kernels come from, and what is changed in them.
+/// Where kernels come from, and how they are changed.
 struct KernelSources {
     std::filesystem::path folder{};      // `--kernel-dir`: a folder like kernels/; empty: the program's own
     std::vector<SourcePatch> patches{};  // of tests
+    std::vector<std::string> more_options{};  // behind the build options: of tests and checks
 };
 
 /// The text of `file` (a path below kernels/, "ring/trace.cl"), patched. Throws UserError for a file that does not

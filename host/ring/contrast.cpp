@@ -2,13 +2,10 @@
 
 namespace raya {
 
-RingContrast::RingContrast(const ExchangeSetup& setup, float threshold)
+RingContrast::RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold)
     : setup_(setup),
       threshold_(threshold),
-      mark_contrasts_(
-          setup.session.build("ring/contrast.cl", kernel_source("ring/contrast.cl", setup.sources), setup.build_options)
-              .kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_float,
-                      const Buffer<float>&, const Buffer<float>&, Buffer<std::uint8_t>&>("mark_contrasts")),
+      mark_contrasts_(kernels.get<MarkContrastsKernel>()),
       marks_(setup.session.buffer<std::uint8_t>("marks", std::size_t{setup.pes} * setup.capacity)) {
     Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
     mark_contrasts("warm-up", RAYA_LEFT, {none, 0, 0}, 0, 0, none);
@@ -24,8 +21,9 @@ void RingContrast::apply(const Buffer<float>& pixels, NeighbourExchange& exchang
 
 void RingContrast::mark_contrasts(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
                                   std::uint32_t capacity, const Buffer<float>& pixels) {
-    setup_.session.launch(label, mark_contrasts_, setup_.pes, setup_.group_size, setup_.broadcast, side,
-                          arrival.distance, arrival.begin, band, capacity, threshold_, arrival.blocks, pixels, marks_);
+    setup_.session.launch(label, mark_contrasts_, setup_.pes, setup_.group_size, setup_.broadcast, Uint<"side">{side},
+                          Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin}, Uint<"band">{band},
+                          Uint<"capacity">{capacity}, threshold_, arrival.blocks, pixels, marks_);
 }
 
 }  // namespace raya

@@ -1,15 +1,21 @@
 // Marks the pixels that differ from a neighbour, over the ring (kernels/ring/contrast.cl).
 #pragma once
+#include "host/kernels/kernels.hpp"
 #include "host/ring/exchange_setup.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 
 namespace raya {
 
+using MarkContrastsKernel =
+    DescribedKernel<"ring/contrast.cl", "mark_contrasts", const Buffer<std::uint32_t>&, Uint<"side">, Uint<"distance">,
+                    Uint<"begin">, Uint<"band">, Uint<"capacity">, cl_float, const Buffer<float>&,
+                    const Buffer<float>&, Buffer<std::uint8_t>&>;
+
 class RingContrast {
   public:
-    /// Builds the kernel, launches it once for nothing (PoCL compiles at the first launch) and takes the device memory.
-    /// `threshold` is a number of the format, 0..1.
-    RingContrast(const ExchangeSetup& setup, float threshold);
+    /// Takes the kernel, which is for one lane, launches it once for nothing (PoCL compiles at the first launch) and
+    /// takes the device memory. `threshold` is a number of the format, 0..1.
+    RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold);
 
     /// Marks the pixels of `pixels`, [PE][capacity][3].
     void apply(const Buffer<float>& pixels, NeighbourExchange& exchange);
@@ -23,9 +29,7 @@ class RingContrast {
 
     ExchangeSetup setup_;
     float threshold_;
-    Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_float, const Buffer<float>&,
-           const Buffer<float>&, Buffer<std::uint8_t>&>
-        mark_contrasts_;
+    MarkContrastsKernel mark_contrasts_;
     Buffer<std::uint8_t> marks_;
 };
 

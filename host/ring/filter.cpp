@@ -4,17 +4,15 @@
 
 namespace raya {
 
-RingFilter::RingFilter(const ExchangeSetup& setup)
+RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
     : setup_(setup),
-      program_(
-          setup.session.build("ring/filter.cl", kernel_source("ring/filter.cl", setup.sources), setup.build_options)),
-      add_neighbours_(program_.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
-                                      const Buffer<float>&, Buffer<float>&>("add_neighbours")),
-      take_means_(program_.kernel<const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("take_means")),
+      add_neighbours_(kernels.get<AddNeighboursKernel>()),
+      take_means_(kernels.get<TakeMeansKernel>()),
       sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes * setup.capacity)) {
     Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
     add_neighbours("warm-up", RAYA_LEFT, {none, 0, 0}, 0, 0);
-    setup.session.launch("warm-up", take_means_, setup.pes, setup.group_size, setup.broadcast, 0u, sums_);
+    setup.session.launch("warm-up", take_means_, setup.pes, setup.group_size, setup.broadcast,
+                         Uint<"capacity">{0}, sums_);
 }
 
 void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
@@ -22,7 +20,7 @@ void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
     sum_line(pixels, exchange, "filter.sum_rows", RAYA_LEFT, RAYA_RIGHT);
     sum_line(pixels, exchange, "filter.sum_columns", RAYA_ABOVE, RAYA_BELOW);
     setup_.session.launch("filter.take_means", take_means_, setup_.pes, setup_.group_size, setup_.broadcast,
-                          setup_.capacity, pixels);
+                          Uint<"capacity">{setup_.capacity}, pixels);
 }
 
 // pixels = (pixels + those on the first side) + those on the second side
@@ -38,8 +36,9 @@ void RingFilter::sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, co
 
 void RingFilter::add_neighbours(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
                                 std::uint32_t capacity) {
-    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast, side,
-                          arrival.distance, arrival.begin, band, capacity, arrival.blocks, sums_);
+    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast,
+                          Uint<"side">{side}, Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin},
+                          Uint<"band">{band}, Uint<"capacity">{capacity}, arrival.blocks, sums_);
 }
 
 }  // namespace raya

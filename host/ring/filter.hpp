@@ -1,15 +1,22 @@
 // The 3 x 3 filter over the ring (kernels/ring/filter.cl).
 #pragma once
+#include "host/kernels/kernels.hpp"
 #include "host/ring/exchange_setup.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 
 namespace raya {
 
+using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&,
+                                            Uint<"side">, Uint<"distance">, Uint<"begin">, Uint<"band">,
+                                            Uint<"capacity">, const Buffer<float>&, Buffer<float>&>;
+using TakeMeansKernel =
+    DescribedKernel<"ring/filter.cl", "take_means", const Buffer<std::uint32_t>&, Uint<"capacity">, Buffer<float>&>;
+
 class RingFilter {
   public:
-    /// Builds the kernels, launches each once for nothing (PoCL compiles at the first launch) and takes the device
-    /// memory.
-    explicit RingFilter(const ExchangeSetup& setup);
+    /// Takes the kernels, which are for one lane, launches each once for nothing (PoCL compiles at the first launch) and
+    /// takes the device memory.
+    RingFilter(Kernels& kernels, const ExchangeSetup& setup);
 
     /// Every pixel becomes the mean of its 3 x 3 neighbourhood. `pixels` is [PE][capacity][3]; afterwards it may name
     /// another buffer of that shape.
@@ -22,11 +29,8 @@ class RingFilter {
                         std::uint32_t capacity);
 
     ExchangeSetup setup_;
-    Program program_;
-    Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, const Buffer<float>&,
-           Buffer<float>&>
-        add_neighbours_;
-    Kernel<const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&> take_means_;
+    AddNeighboursKernel add_neighbours_;
+    TakeMeansKernel take_means_;
     Buffer<float> sums_;  // [PE][capacity][3]
 };
 

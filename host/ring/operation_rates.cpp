@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
-#include "host/kernels/kernel_options.hpp"
-#include "host/kernels/kernel_source.hpp"
+#include "host/kernels/kernels.hpp"
 #include "kernels/shared/chains.h"
 
 namespace raya {
 namespace {
+
+using OperationsKernel =
+    DescribedKernel<"number/operations.cl", "operations", Uint<"kind">, Uint<"rounds">, cl_float, Buffer<float>&>;
 
 double last_seconds(Session& session) {
     const double ns = static_cast<double>(session.profile().summary().back().total_ns);
@@ -19,12 +21,9 @@ double last_seconds(Session& session) {
 
 std::array<double, kOperations.size()> operation_rates(Session& session, const NumberFormat& format,
                                                        std::uint32_t lanes, int samples) {
-    std::vector<std::string> options = format_options(format, session.device());
-    options.push_back("-DRAYA_LANES=" + std::to_string(lanes));
     const std::uint32_t group_size = default_group_size(session.device());
-    options.push_back("-DRAYA_GROUP=" + std::to_string(group_size));
-    const Program program = session.build("number/operations.cl", kernel_source("number/operations.cl"), options);
-    auto kernel = program.kernel<cl_uint, cl_uint, cl_float, Buffer<float>&>("operations");
+    Kernels kernels(session, {.lanes = lanes, .group_size = group_size, .format = format});
+    auto kernel = kernels.get<OperationsKernel>();
     // A few items a unit on a CPU; enough to hide latencies elsewhere.
     const std::size_t items = std::size_t{session.device().compute_units} * (session.device().type == "cpu" ? 2 : 2048);
     Buffer<float> results = session.buffer<float>("results of operations", items * lanes);
@@ -33,7 +32,8 @@ std::array<double, kOperations.size()> operation_rates(Session& session, const N
         cl_uint rounds = 1000;
         const auto seconds = [&] {
             session.clear_profile();
-            session.launch("operations", kernel, items / group_size, group_size, kind, rounds, 1.0f, results);
+            session.launch("operations", kernel, items / group_size, group_size, Uint<"kind">{kind}, Uint<"rounds">{rounds}, 1.0f,
+                           results);
             return last_seconds(session);
         };
         seconds();  // PoCL compiles here

@@ -88,9 +88,9 @@ void RingRenderer::build(const Scene& scene) {
     const StepLog::Step building = session_.step("set up device");
     const Clock::time_point start = Clock::now();
     const KernelOptions options = kernel_options(settings_, job_, scene, session_.device());
-    const KernelChoice& choice = settings_.kernels;
+    Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
-        session_, options, choice.more_options, choice.sources, settings_.mapping.pes, memory_.block_pixels,
+        kernels, settings_.mapping.pes, memory_.block_pixels,
         slice_pixels(settings_,
                      settings_.accel.grid ? std::min<std::size_t>(20, scene.object_count()) : scene.object_count(),
                      options.lanes * options.group_size, memory_.block_pixels));
@@ -105,22 +105,20 @@ void RingRenderer::build(const Scene& scene) {
 
 void RingRenderer::build_exchange(KernelOptions options) {
     options.lanes = 1;
-    std::vector<std::string> all = build_options(options, session_.device());
-    all.insert(all.end(), settings_.kernels.more_options.begin(), settings_.kernels.more_options.end());
+    Kernels kernels(session_, options, settings_.kernels.sources);
     const ExchangeSetup setup{.session = session_,
                               .broadcast = broadcast_,
                               .pes = settings_.mapping.pes,
                               .capacity = memory_.block_pixels,
-                              .group_size = options.group_size,
-                              .build_options = all,
-                              .sources = settings_.kernels.sources};
+                              .group_size = options.group_size};
     exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
                                                     memory_.band_pixels);
     if (settings_.antialias.method == AntialiasMethod::kFilter) {
-        filter_ = std::make_unique<RingFilter>(setup);
+        filter_ = std::make_unique<RingFilter>(kernels, setup);
         return;
     }
-    contrast_ = std::make_unique<RingContrast>(setup, round_to_format(settings_.antialias.threshold, settings_.format));
+    contrast_ = std::make_unique<RingContrast>(kernels, setup,
+                                               round_to_format(settings_.antialias.threshold, settings_.format));
     counters_.push_back(tracer_->make_counters(kRetrace));
 }
 

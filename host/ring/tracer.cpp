@@ -4,18 +4,14 @@
 
 namespace raya {
 
-Tracer::Tracer(Session& session, const KernelOptions& options, const std::vector<std::string>& more_options,
-               const KernelSources& sources, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice)
-    : session_(session), options_(options), pes_(pes), capacity_(capacity), slice_(slice) {
-    std::vector<std::string> all = raya::build_options(options, session.device());
-    all.insert(all.end(), more_options.begin(), more_options.end());
-    const Program program = session.build("ring/trace.cl", kernel_source("ring/trace.cl", sources), all);
-    kernel_ = std::make_unique<TraceKernel>(
-        program.kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
-                       const Buffer<std::uint8_t>&, LocalMemory<std::uint32_t>, Buffer<float>&, Buffer<std::uint64_t>&,
-                       Buffer<std::uint64_t>&>("trace"));
-    build_options_ = program.options();
-}
+Tracer::Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice)
+    : session_(kernels.session()),
+      options_(kernels.options()),
+      pes_(pes),
+      capacity_(capacity),
+      slice_(slice),
+      build_options_(kernels.program(TraceKernel::kFile).options()),
+      kernel_(kernels.get<TraceKernel>()) {}
 
 PassCounters Tracer::make_counters(const std::string& pass) const {
     return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, std::size_t{pes_} * capacity_),
@@ -47,8 +43,10 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
 void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                     const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters) {
     const LocalMemory<std::uint32_t> memory{1 + (options_.words_local ? job.size() : 0)};
-    session_.launch(label, *kernel_, pes_, options_.group_size, job, static_cast<cl_uint>(job.size()), range.block,
-                    capacity_, range.begin, range.end, points, marks, memory, pixels, counters.cycles, counters.events);
+    session_.launch(label, kernel_, pes_, options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
+                    Uint<"block">{range.block}, Uint<"capacity">{capacity_}, Uint<"begin">{range.begin},
+                    Uint<"end">{range.end}, Uint<"points">{points}, marks, memory, pixels, counters.cycles,
+                    counters.events);
 }
 
 }  // namespace raya

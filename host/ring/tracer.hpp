@@ -2,12 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "host/cl/commands.hpp"
-#include "host/kernels/kernel_options.hpp"
+#include "host/kernels/kernels.hpp"
 #include "host/report/progress.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"
@@ -25,12 +23,15 @@ struct PixelRange {
     std::uint32_t block = 0, begin = 0, end = 0;
 };
 
+using TraceKernel =
+    DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">, Uint<"block">,
+                    Uint<"capacity">, Uint<"begin">, Uint<"end">, Uint<"points">, const Buffer<std::uint8_t>&,
+                    LocalMemory<std::uint32_t>, Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
+
 class Tracer {
   public:
     /// `capacity`: pixels in the memory of each PE. `slice`: pixels of each share that one launch traces.
-    /// Checks the options as build_options does, builds the kernel with `more_options` appended.
-    Tracer(Session& session, const KernelOptions& options, const std::vector<std::string>& more_options,
-           const KernelSources& sources, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice);
+    Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice);
 
     /// Counters of a pass, all 0.
     PassCounters make_counters(const std::string& pass) const;
@@ -50,10 +51,6 @@ class Tracer {
     const std::string& build_options() const { return build_options_; }
 
   private:
-    using TraceKernel = Kernel<const Buffer<std::uint32_t>&, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint,
-                               const Buffer<std::uint8_t>&, LocalMemory<std::uint32_t>, Buffer<float>&,
-                               Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
-
     void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                 const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
 
@@ -61,7 +58,7 @@ class Tracer {
     KernelOptions options_;
     std::uint32_t pes_, capacity_, slice_;
     std::string build_options_;
-    std::unique_ptr<TraceKernel> kernel_;
+    TraceKernel kernel_;
 };
 
 }  // namespace raya

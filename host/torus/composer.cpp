@@ -52,10 +52,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
     return sorted;
 }
 
-Composer::Composer(Session& session, const std::vector<std::string>& build_options, const KernelSources& sources)
-    : session_(session),
-      compose_(session.build("torus/compose.cl", kernel_source("torus/compose.cl", sources), build_options)
-                   .kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("compose")) {
+Composer::Composer(Kernels& kernels) : session_(kernels.session()), compose_(kernels.get<ComposeKernel>()) {
     compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles at the first launch
 }
 
@@ -68,7 +65,7 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
     Buffer<float> image = session_.buffer<float>("image", 3ull * pixels);
     session_.write("compose", colours, contributions.colours);
     session_.write("compose", starts, contributions.starts);
-    session_.launch("compose", compose_, kGroups, 1, colours, starts, pixels, image);
+    session_.launch("compose", compose_, kGroups, 1, colours, starts, Uint<"pixels">{pixels}, image);
     std::vector<float> pixels_of_image(3ull * pixels);
     session_.read("compose", image, pixels_of_image);
     return pixels_of_image;

@@ -1,11 +1,9 @@
 // Puts the contributions that come back to the root into the order of their pixels' ray trees and adds them up.
 #pragma once
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "host/cl/commands.hpp"
-#include "host/kernels/kernel_source.hpp"
+#include "host/kernels/kernels.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
@@ -21,16 +19,20 @@ struct Contributions {
 /// a pixel's tree.
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels);
 
+using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffer<float>&, const Buffer<std::uint32_t>&,
+                                      Uint<"pixels">, Buffer<float>&>;
+
 class Composer {
   public:
-    Composer(Session& session, const std::vector<std::string>& build_options, const KernelSources& sources);
+    /// Kernels for one lane and groups of one.
+    explicit Composer(Kernels& kernels);
 
     /// [pixels][3]: linear red, green, blue, in the format of the build.
     std::vector<float> compose(const Contributions& contributions);
 
   private:
     Session& session_;
-    Kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&> compose_;
+    ComposeKernel compose_;
 };
 
 }  // namespace raya

@@ -14,6 +14,16 @@ std::uint32_t largest_node(const NodeMemories& memories) {
     return largest;
 }
 
+std::size_t own_words(const KernelOptions& options) { return options.group_size + 1; }  // of the work-items
+
+// Kernels copy a node's words into local memory where it has room for them beside what work-items share.
+KernelOptions where_words_fit(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
+    const std::size_t most_shared = std::max<std::size_t>(RAYA_COUNT_WORDS, RAYA_ROUTE_WORDS);
+    const std::size_t words = most_shared + own_words(options) + largest_node(memories);
+    options.words_local = options.words_local && sizeof(cl_uint) * words <= device.local_memory_bytes;
+    return options;
+}
+
 PacketRecord record_of(const raya_torus& torus, std::uint32_t superstep, std::uint32_t node, const raya_head& packet) {
     PacketRecord record{.superstep = superstep, .source = node, .destination = RAYA_ROOT, .head = packet};
     if (raya_state_kind(packet.state) == RAYA_KIND_RETURN) return record;
@@ -27,34 +37,35 @@ PacketRecord record_of(const raya_torus& torus, std::uint32_t superstep, std::ui
 
 NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
                      const NodeBuffers& buffers, const KernelOptions& options)
-    : session_(session),
+    : NodeArray(Kernels(session, where_words_fit(options, memories, session.device()), settings.kernels.sources),
+                settings, memories, buffers) {}
+
+NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories,
+                     const NodeBuffers& buffers)
+    : session_(kernels.session()),
       settings_(settings),
       buffers_(buffers),
-      options_(options),
       nodes_(raya_nodes(settings.torus)),
       node_words_(largest_node(memories)),
-      memories_(session.buffer<std::uint32_t>("node memories", memories.words.size())),
-      starts_(session.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
-      run_(session.buffer<raya_run>("run", 1)),
-      queues_(session.buffer<raya_packet>("queues", std::size_t{nodes_} * buffers.queue)),
-      status_(session.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
-      returns_(session.buffer<raya_head>("returns", buffers.queue)),
-      events_(session.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
-      made_(session.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
-      ended_(session.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
-      rays_(session, settings.torus, buffers.box,
+      options_(kernels.options()),
+      memories_(session_.buffer<std::uint32_t>("node memories", memories.words.size())),
+      starts_(session_.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
+      run_(session_.buffer<raya_run>("run", 1)),
+      queues_(session_.buffer<raya_packet>("queues", std::size_t{nodes_} * buffers.queue)),
+      status_(session_.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
+      returns_(session_.buffer<raya_head>("returns", buffers.queue)),
+      events_(session_.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
+      made_(session_.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
+      ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
+      rays_(session_, settings.torus, buffers.box,
             {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
-      homeward_(session, settings.torus, buffers.box,
-                {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX}) {
-    const std::size_t most_shared = std::max<std::size_t>(RAYA_COUNT_WORDS, RAYA_ROUTE_WORDS);
-    options_.words_local =
-        sizeof(cl_uint) * (most_shared + own_words() + node_words_) <= session.device().local_memory_bytes;
-    std::vector<std::string> all = raya::build_options(options_, session.device());
-    all.insert(all.end(), settings.kernels.more_options.begin(), settings.kernels.more_options.end());
-    inject_ = build<Inject>("inject", all);
-    trace_ = build<Trace>("trace_voxel", all);
-    route_ = build<Route>("route", all);
-    accept_ = build<Accept>("accept", all);
+      homeward_(session_, settings.torus, buffers.box,
+                {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX}),
+      inject_(kernels.get<node_kernels::Inject>()),
+      trace_(kernels.get<node_kernels::TraceVoxel>()),
+      route_(kernels.get<node_kernels::Route>()),
+      accept_(kernels.get<node_kernels::Accept>()),
+      build_options_(kernels.program(node_kernels::Accept::kFile).options()) {
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
     set_pixels(settings.pixels);
@@ -70,18 +81,8 @@ void NodeArray::set_pixels(const PixelSubset& pixels) {
     session_.write("scatter", run_, {&run, 1});
 }
 
-template <class K>
-std::unique_ptr<K> NodeArray::build(const std::string& name, const std::vector<std::string>& all) {
-    const std::string file = "torus/" + name + ".cl";
-    const Program program = session_.build(file, kernel_source(file, settings_.kernels.sources), all);
-    build_options_ = program.options();
-    return [&]<class... Args>(std::type_identity<Kernel<Args...>>) {
-        return std::make_unique<K>(program.kernel<Args...>(name));
-    }(std::type_identity<K>{});
-}
-
-NodeArray::Local NodeArray::local_words(std::size_t shared) const {
-    return {shared + own_words() + (options_.words_local ? node_words_ : 0)};
+LocalMemory<std::uint32_t> NodeArray::local_words(std::size_t shared) const {
+    return {shared + own_words(options_) + (options_.words_local ? node_words_ : 0)};
 }
 
 void NodeArray::clear() {
@@ -94,24 +95,24 @@ void NodeArray::clear() {
 }
 
 void NodeArray::inject() {
-    session_.launch("inject", *inject_, nodes_, options_.group_size, memories_, starts_, run_,
+    session_.launch("inject", inject_, nodes_, options_.group_size, memories_, starts_, run_,
                     local_words(RAYA_COUNT_WORDS), queues_, status_, events_, made_, ended_);
 }
 
 void NodeArray::trace_voxel(Room room) {
-    session_.launch("trace_voxel", *trace_, nodes_, options_.group_size, memories_, starts_, run_, room,
+    session_.launch("trace_voxel", trace_, nodes_, options_.group_size, memories_, starts_, run_, room,
                     local_words(RAYA_COUNT_WORDS), queues_, status_, events_, made_, ended_);
 }
 
 void NodeArray::route() {
-    session_.launch("route", *route_, nodes_, options_.group_size, memories_, starts_, run_,
+    session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_,
                     local_words(RAYA_ROUTE_WORDS), queues_, rays_.outboxes(), homeward_.outboxes(), returns_, status_,
                     ended_);
 }
 
 void NodeArray::accept(Room room, std::uint32_t superstep) {
-    session_.launch("accept", *accept_, nodes_, options_.group_size, memories_, starts_, run_, room, superstep,
-                    rays_.sent(), homeward_.sent(), Local{options_.group_size}, queues_, rays_.inboxes(),
+    session_.launch("accept", accept_, nodes_, options_.group_size, memories_, starts_, run_, room,
+                    Uint<"turn">{superstep}, rays_.sent(), homeward_.sent(), LocalMemory<std::uint32_t>{options_.group_size}, queues_, rays_.inboxes(),
                     homeward_.inboxes(), homeward_.outboxes(), returns_, status_, ended_);
 }
 

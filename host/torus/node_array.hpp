@@ -1,24 +1,16 @@
 // All nodes of the torus on the device: their memories, queues and counters, and the kernels that they run.
 #pragma once
 #include <cstdint>
-#include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "host/cl/commands.hpp"
 #include "host/machine/machine.hpp"
 #include "host/torus/link_exchange.hpp"
+#include "host/torus/node_kernels.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/torus_renderer.hpp"
 
 namespace raya {
-
-/// Room that packets ask for before they are accepted or treated (kernels/shared/traffic.h).
-enum class Room : cl_uint {
-    kWholeTree,  // for all that a ray's tree may turn into
-    kTight       // as little as can be
-};
 
 /// The kernels are launched with one work-group for each node; each step is labelled with its kernel's name.
 class NodeArray {
@@ -59,31 +51,16 @@ class NodeArray {
     bool words_local() const { return options_.words_local; }  // kernels copy a node's words into local memory
 
   private:
-    using Words = const Buffer<std::uint32_t>&;
-    using State = Buffer<std::uint32_t>&;
-    using Counters = Buffer<std::uint64_t>&;
-    using Local = LocalMemory<std::uint32_t>;
-    using Run = const Buffer<raya_run>&;
-    using Rays = Buffer<raya_packet>&;
-    using Returns = Buffer<raya_head>&;
-    using Inject = Kernel<Words, Words, Run, Local, Rays, State, Counters, Counters, Counters>;
-    using Trace = Kernel<Words, Words, Run, Room, Local, Rays, State, Counters, Counters, Counters>;
-    using Route = Kernel<Words, Words, Run, Local, Rays, State, State, Returns, State, Counters>;
-    using Accept = Kernel<Words, Words, Run, Room, cl_uint, Words, Words, Local, Rays, State, State, State, Returns,
-                          State, Counters>;
-
-    template <class K>
-    std::unique_ptr<K> build(const std::string& name, const std::vector<std::string>& all);
-    /// Local memory of a kernel: `shared` words, own_words(), and the node's words where kernels copy them.
-    Local local_words(std::size_t shared) const;
-    std::size_t own_words() const { return options_.group_size + 1; }  // of the work-items
+    NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers);
+    /// Local memory of a kernel: `shared` words, those of its work-items, and the node's words where kernels copy them.
+    LocalMemory<std::uint32_t> local_words(std::size_t shared) const;
     PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
 
     Session& session_;
     const TorusSettings settings_;
     NodeBuffers buffers_;
-    KernelOptions options_;
     std::uint32_t nodes_, node_words_;
+    KernelOptions options_;
     Buffer<std::uint32_t> memories_, starts_;
     Buffer<raya_run> run_;
     Buffer<raya_packet> queues_;
@@ -91,11 +68,11 @@ class NodeArray {
     Buffer<raya_head> returns_;
     Buffer<std::uint64_t> events_, made_, ended_;
     LinkExchange rays_, homeward_;  // boxes of rays, of returns
+    node_kernels::Inject inject_;
+    node_kernels::TraceVoxel trace_;
+    node_kernels::Route route_;
+    node_kernels::Accept accept_;
     std::string build_options_;
-    std::unique_ptr<Inject> inject_;
-    std::unique_ptr<Trace> trace_;
-    std::unique_ptr<Route> route_;
-    std::unique_ptr<Accept> accept_;
 };
 
 }  // namespace raya

@@ -103,9 +103,8 @@ void TorusRenderer::Parts::build() {
     nodes = std::make_unique<NodeArray>(session, settings, memories, buffers, options);
     KernelOptions one_lane = options;
     one_lane.lanes = one_lane.group_size = 1;
-    std::vector<std::string> all = build_options(one_lane, session.device());
-    all.insert(all.end(), settings.kernels.more_options.begin(), settings.kernels.more_options.end());
-    composer = std::make_unique<Composer>(session, all, settings.kernels.sources);
+    Kernels kernels(session, one_lane, settings.kernels.sources);
+    composer = std::make_unique<Composer>(kernels);
     nodes->clear();
     nodes->trace_voxel(Room::kWholeTree);  // of empty queues: PoCL compiles a kernel's body at its first launch
     nodes->route();

@@ -66,7 +66,7 @@ class HitKernels {
         : verification_(v),
           session_(session),
           lanes_(build.lanes),
-          program_(v.build(session, "verify/hits.cl", options(v, build))) {}
+          program_(v.build(session, "verify/hits.cl", options(build))) {}
 
     const std::string& options() const { return program_.options(); }
     std::vector<std::string> lanes_remedies() const { return verification_.lanes_remedies(lanes_); }
@@ -91,14 +91,14 @@ class HitKernels {
     }
 
   private:
-    static std::vector<std::string> options(const Verification& v, const HitBuild& build) {
+    static KernelOptions options(const HitBuild& build) {
         KernelOptions options;
         options.lanes = build.lanes;
         options.format = build.format;
         options.words_local = false;
         options.accel = true;
         options.filter = build.filter;
-        return build_options(options, v.device());
+        return options;
     }
 
     const Verification& verification_;

@@ -44,11 +44,8 @@ struct Rendering {
 
 KernelChoice kernels_for(const Verification& v, const Rendering& r) {
     KernelChoice choice = v.kernels(r.lanes, r.group_size);
-    const auto add = [&](const std::vector<std::string>& options) {
-        choice.more_options.insert(choice.more_options.end(), options.begin(), options.end());
-    };
-    if (r.global_words) add(without_local_words());
-    if (r.refined) add(without_exact_arithmetic());
+    choice.local_words = !r.global_words;
+    choice.exact_arithmetic = !r.refined;
     return choice;
 }
 
@@ -100,7 +97,7 @@ std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
 std::optional<Image> plain_image(const Verification& v, Session& session, const Picture& picture) {
     RingSettings settings = plain_settings(picture);
     settings.kernels.sources = v.kernels(1, 1).sources;
-    settings.kernels.more_options = {"-cl-opt-disable"};
+    settings.kernels.sources.more_options = {"-cl-opt-disable"};
     try {
         return RingRenderer(session, scene_of(picture), settings).render().image;
     } catch (const std::exception&) {

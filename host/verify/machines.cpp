@@ -42,8 +42,6 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
                    .remedies = remedies()});
 }
 
-std::vector<std::string> plain_options() { return {"-cl-std=CL1.2"}; }
-
 // By the same functions as kernels/verify/machine.cl's find_owners.
 void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
@@ -61,7 +59,7 @@ Verdict check_owners(const Verification& v, Session& session, std::uint32_t kind
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;
     for (std::size_t i = 0; i < cases; ++i) add_owner(expected, mappings[i], pixels[i]);
-    const Program program = v.build(session, "verify/machine.cl", plain_options());
+    const Program program = v.build(session, "verify/machine.cl", {});
     auto mapping_buffer = session.buffer<raya_mapping>("mappings", cases);
     auto pixel_buffer = session.buffer<raya_pixel>("pixels", cases);
     auto results = session.buffer<std::uint32_t>("owners", expected.size());
@@ -93,7 +91,7 @@ Verdict check_ways(const Verification& v, Session& session) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             expected.push_back(raya_link_end(toruses[i], nodes[2 * i], link));
     }
-    const Program program = v.build(session, "verify/machine.cl", plain_options());
+    const Program program = v.build(session, "verify/machine.cl", {});
     auto torus_buffer = session.buffer<raya_torus>("toruses", cases);
     auto node_buffer = session.buffer<std::uint32_t>("nodes", nodes.size());
     auto results = session.buffer<std::uint32_t>("ways", expected.size());
@@ -122,9 +120,7 @@ Verdict check_local_memory(const Verification& v, Session& session, std::uint32_
             fmt::format("{} work-items wanted, the device has {} in a group", group_size, v.device().max_group_size));
     // 2 x 2000 words are half of the 32 KB that OpenCL promises.
     const std::uint32_t words = 2000;
-    std::vector<std::string> options = plain_options();
-    if (group_size > 1) options.push_back(fmt::format("-DRAYA_GROUP={}", group_size));  // else as the checks above
-    const Program program = v.build(session, "verify/machine.cl", options);
+    const Program program = v.build(session, "verify/machine.cl", {.group_size = group_size});
     Words from(std::size_t{kGroups} * words), expected(from.size()), got(from.size()), drawn(from.size());
     std::iota(from.begin(), from.end(), 0u);
     for (std::size_t i = 0; i < from.size(); ++i)  // an odd number of times: turned round

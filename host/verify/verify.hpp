@@ -6,7 +6,7 @@
 
 #include "host/cl/commands.hpp"
 #include "host/cl/device.hpp"
-#include "host/kernels/kernel_options.hpp"
+#include "host/kernels/kernels.hpp"
 #include "host/verify/check.hpp"
 
 namespace raya {
@@ -50,7 +50,7 @@ class Verification {
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
     /// A program of kernels/.
-    Program build(Session& session, const std::string& file, const std::vector<std::string>& options) const;
+    Program build(Session& session, const std::string& file, const KernelOptions& options) const;
     /// The same for a renderer's kernels.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -14,6 +14,7 @@
 #include "host/cl/commands.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/kernels/kernel_source.hpp"
+#include "host/kernels/kernels.hpp"
 #include "tests/paths.h"
 
 namespace raya {
@@ -81,19 +82,17 @@ class KernelRunner {
     static std::string text_of(const std::string& file) {
         std::ifstream in(RAYA_SOURCE_DIR "/tests/kernels/" + file, std::ios::binary);
         if (!in) throw std::runtime_error("no test kernel " + file);
-        std::ostringstream text;
-        text << in.rdbuf();
-        return expand_kernel_source(text.str(), "tests/kernels/" + file);
+        return {std::istreambuf_iterator<char>(in), {}};
     }
 
-    Program build(const std::string& file, const Variant& variant) const {
+    Program build(const std::string& file, const Variant& variant) {
         KernelOptions options;
         options.lanes = variant.lanes;
         options.format = variant.format;
         options.words_local = false;  // where the words lie is the ring's business, not that of the pieces
-        std::vector<std::string> all = build_options(options, session_.device());
-        if (!variant.optimised) all.emplace_back("-cl-opt-disable");
-        return session_.build(file, text_of("lanes.clh") + text_of(file), all);
+        KernelSources sources;
+        if (!variant.optimised) sources.more_options = {"-cl-opt-disable"};
+        return Kernels(session_, options, sources).build("tests/kernels/" + file, text_of("lanes.clh") + text_of(file));
     }
 
     std::uint32_t lanes_;

@@ -47,9 +47,15 @@ TEST_CASE("every tunable of the kernels is given a value", "[ring]") {
                                                 "-DRAYA_CONES=0", "-DRAYA_FILTER=1"});
     DeviceInfo exact = kCpu;
     exact.correctly_rounded_divide_sqrt = exact.fused_multiply_add = true;
-    const Options options = format_options({}, exact);
-    CHECK(options == Options{"-cl-std=CL1.2", "-DRAYA_EXACT_DIVIDE=1", "-DRAYA_EXACT_FMA=1",
-                             "-cl-fp32-correctly-rounded-divide-sqrt"});
+    const auto arithmetic = [&](const KernelOptions& options) {
+        const Options all = build_options(options, exact);
+        return Options(all.begin() + 1, std::find(all.begin(), all.end(), "-DRAYA_LANES=1"));
+    };
+    CHECK(arithmetic({}) ==
+          Options{"-DRAYA_EXACT_DIVIDE=1", "-DRAYA_EXACT_FMA=1", "-cl-fp32-correctly-rounded-divide-sqrt"});
+    CHECK(arithmetic({.exact_divide = false}) == Options{"-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=1"});
+    CHECK(arithmetic({.exact_fma = false}) ==
+          Options{"-DRAYA_EXACT_DIVIDE=1", "-DRAYA_EXACT_FMA=0", "-cl-fp32-correctly-rounded-divide-sqrt"});
 }
 
 TEST_CASE("division is asked to be correctly rounded only where the device offers it", "[ring]") {

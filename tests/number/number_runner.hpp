@@ -6,13 +6,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/kernels/kernel_source.hpp"
+#include "host/kernels/kernels.hpp"
 #include "host/machine/number_format.hpp"
 #include "tests/paths.h"
 
@@ -97,26 +97,15 @@ class NumberRunner {
     }
 
   private:
-    static std::string source(const std::vector<SourcePatch>& patches) {
+    Program built(const NumberBuild& build) {
         std::ifstream in(RAYA_SOURCE_DIR "/tests/number/operations.cl", std::ios::binary);
         if (!in) throw std::runtime_error("no operations.cl");
-        std::ostringstream text;
-        text << in.rdbuf();
-        return expand_kernel_source(text.str(), "tests/number/operations.cl", {.patches = patches});
-    }
-
-    Program built(const NumberBuild& build) const {
-        const bool exact = session_.device().correctly_rounded_divide_sqrt && !build.refines_division;
-        std::vector<std::string> options = {"-cl-std=CL1.2",
-                                            fmt::format("-DRAYA_LANES={}", build.lanes),
-                                            fmt::format("-DRAYA_EXPONENT_BITS={}", build.format.exponent_bits),
-                                            fmt::format("-DRAYA_FRACTION_BITS={}", build.format.fraction_bits),
-                                            fmt::format("-DRAYA_TRUNCATE={:d}", build.format.truncates),
-                                            fmt::format("-DRAYA_EXACT_DIVIDE={:d}", exact),
-                                            fmt::format("-DRAYA_EXACT_FMA={:d}", session_.device().fused_multiply_add)};
-        if (exact) options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
-        if (build.refines_division) options.emplace_back("-DRAYA_TEST_DEVICE_ERROR");
-        return session_.build("operations.cl", source(build.patches), options);
+        const KernelOptions options{
+            .lanes = build.lanes, .format = build.format, .exact_divide = !build.refines_division};
+        KernelSources sources{.patches = build.patches};
+        if (build.refines_division) sources.more_options = {"-DRAYA_TEST_DEVICE_ERROR"};
+        return Kernels(session_, options, sources)
+            .build("tests/number/operations.cl", {std::istreambuf_iterator<char>(in), {}});
     }
 
     std::uint32_t lanes_;

@@ -35,7 +35,7 @@ inline RingSettings settings_of(const RingCase& c) {
     settings.kernels.filter = c.filter;
     settings.kernels.lanes = c.lanes;
     settings.kernels.group_size = c.group;
-    settings.kernels.more_options = c.more_options;
+    settings.kernels.sources.more_options = c.more_options;
     return settings;
 }
 

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "host/cl/commands.hpp"
-#include "host/kernels/kernel_options.hpp"
-#include "host/kernels/kernel_source.hpp"
+#include "host/ring/contrast.hpp"
+#include "host/ring/filter.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/route.hpp"
 #include "kernels/shared/job.h"
@@ -26,8 +25,6 @@ constexpr Step kSteps[] = {Step::kAddNeighbours, Step::kTakeMeans, Step::kMarkCo
 const char* step_name(Step step) {
     return step == Step::kAddNeighbours ? "add_neighbours" : step == Step::kTakeMeans ? "take_means" : "mark_contrasts";
 }
-
-std::string step_file(Step step) { return step == Step::kMarkContrasts ? "ring/contrast.cl" : "ring/filter.cl"; }
 
 struct Launch {
     raya_mapping m{};
@@ -59,7 +56,10 @@ class Runner {
   public:
     Runner(Session& session, Step step, std::uint32_t group, const std::string& format,
            const KernelSources& sources = {})
-        : session_(session), step_(step), group_(group), program_(build(format, sources)) {}
+        : session_(session),
+          step_(step),
+          group_(group),
+          kernels_(session, {.lanes = 1, .group_size = group, .format = parse_format(format)}, sources) {}
 
     /// The memory after the first `groups` PEs have run.
     Memory run(const Launch& l, const Memory& before, std::size_t groups) {
@@ -84,12 +84,6 @@ class Runner {
     using Words = const Buffer<std::uint32_t>&;
     using Floats = const Buffer<float>&;
 
-    Program build(const std::string& format, const KernelSources& sources) const {
-        const KernelOptions options = {.lanes = 1, .group_size = group_, .format = parse_format(format)};
-        const std::string file = step_file(step_);
-        return session_.build(file, kernel_source(file, sources), build_options(options, session_.device()));
-    }
-
     template <class T>
     Buffer<T> filled(const std::string& name, const std::vector<T>& values) {
         Buffer<T> buffer = session_.buffer<T>(name, values.size());
@@ -100,26 +94,28 @@ class Runner {
     void launch(const Launch& l, std::size_t groups, Words job, Floats arrived, Buffer<float>& pixels,
                 Buffer<std::uint8_t>& marks) {
         const std::string name = step_name(step_);
+        const Uint<"side"> side{l.side};
+        const Uint<"distance"> distance{l.distance};
+        const Uint<"begin"> begin{l.begin};
+        const Uint<"band"> band{l.band};
+        const Uint<"capacity"> capacity{l.capacity};
         if (step_ == Step::kTakeMeans) {
-            auto kernel = program_.kernel<Words, cl_uint, Buffer<float>&>(name);
-            session_.launch(name, kernel, groups, group_, job, l.capacity, pixels);
+            auto kernel = kernels_.get<TakeMeansKernel>();
+            session_.launch(name, kernel, groups, group_, job, capacity, pixels);
         } else if (step_ == Step::kAddNeighbours) {
-            auto kernel =
-                program_.kernel<Words, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, Floats, Buffer<float>&>(name);
-            session_.launch(name, kernel, groups, group_, job, l.side, l.distance, l.begin, l.band, l.capacity, arrived,
-                            pixels);
+            auto kernel = kernels_.get<AddNeighboursKernel>();
+            session_.launch(name, kernel, groups, group_, job, side, distance, begin, band, capacity, arrived, pixels);
         } else {
-            auto kernel = program_.kernel<Words, cl_uint, cl_uint, cl_uint, cl_uint, cl_uint, cl_float, Floats, Floats,
-                                          Buffer<std::uint8_t>&>(name);
-            session_.launch(name, kernel, groups, group_, job, l.side, l.distance, l.begin, l.band, l.capacity,
-                            l.threshold, arrived, pixels, marks);
+            auto kernel = kernels_.get<MarkContrastsKernel>();
+            session_.launch(name, kernel, groups, group_, job, side, distance, begin, band, capacity, l.threshold,
+                            arrived, pixels, marks);
         }
     }
 
     Session& session_;
     Step step_;
     std::uint32_t group_;
-    Program program_;
+    Kernels kernels_;
 };
 
 /// A launch as an exchange makes it: of a block that holds neighbours, mostly.

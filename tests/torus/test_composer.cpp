@@ -142,7 +142,8 @@ TEST_CASE("no contributions at all make a black image", "[torus]") {
     CHECK(none.colours.empty());
     CHECK(none.starts == std::vector<std::uint32_t>(8, 0));
     Session session(choose_device(""));
-    Composer composer(session, build_options({}, session.device()), {});
+    Kernels kernels(session, {});
+    Composer composer(kernels);
     CHECK(composer.compose(none) == std::vector<float>(21, 0));
 }
 
@@ -153,7 +154,8 @@ TEST_CASE("pixels are sums whose every step is rounded once", "[torus]") {
     KernelOptions options;
     options.format = parse_format(name);
     Session session(choose_device(""));
-    Composer composer(session, build_options(options, session.device()), {});
+    Kernels kernels(session, options);
+    Composer composer(kernels);
     for (int i = 0; i < 40; ++i) {
         const std::uint32_t pixels = 1 + random_below(random, 300);
         CAPTURE(seed, i, name, pixels);
