@@ -19,8 +19,8 @@ struct KernelOptions {
     bool exact_divide = true;  // division and root are the device's own where it rounds them correctly; false: refined
     bool exact_fma = true;     // so is a b + c; false: emulated
     bool words_local = true;   // PEs take the broadcast words into local memory
-    bool accel = false;       // the job has a grid: rays walk through it
-    bool filter = false;      // spheres are filtered in fp32 before the exact test, see sphere_filter_holds
+    bool accel = false;        // the job has a grid: rays walk through it
+    bool filter = false;       // spheres are filtered in fp32 before the exact test, see sphere_filter_holds
     bool polygons = true, patches = true, cones = true;
 };
 

@@ -10,8 +10,8 @@ namespace raya {
 
 /// Where kernels come from, and how they are changed.
 struct KernelSources {
-    std::filesystem::path folder{};      // `--kernel-dir`: a folder like kernels/; empty: the program's own
-    std::vector<SourcePatch> patches{};  // of tests
+    std::filesystem::path folder{};           // `--kernel-dir`: a folder like kernels/; empty: the program's own
+    std::vector<SourcePatch> patches{};       // of tests
     std::vector<std::string> more_options{};  // behind the build options: of tests and checks
 };
 

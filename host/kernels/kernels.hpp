@@ -27,8 +27,8 @@ class Kernels {
     /// Kernels for the device of `session`, which outlives this. Throws UserError as build_options() does.
     Kernels(Session& session, const KernelOptions& options, const KernelSources& sources = {});
 
-    /// The kernel that `K`, a DescribedKernel, describes. Builds its file if no other kernel of it was asked for before.
-    /// Throws UserError (no such file), DeviceError (it does not build, it has another number of parameters).
+    /// The kernel that `K`, a DescribedKernel, describes. Builds its file if no other kernel of it was asked for
+    /// before. Throws UserError (no such file), DeviceError (it does not build, it has another number of parameters).
     template <class K>
     K get() {
         return K(program(K::kFile));

@@ -11,8 +11,8 @@ RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
       sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes * setup.capacity)) {
     Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
     add_neighbours("warm-up", RAYA_LEFT, {none, 0, 0}, 0, 0);
-    setup.session.launch("warm-up", take_means_, setup.pes, setup.group_size, setup.broadcast,
-                         Uint<"capacity">{0}, sums_);
+    setup.session.launch("warm-up", take_means_, setup.pes, setup.group_size, setup.broadcast, Uint<"capacity">{0},
+                         sums_);
 }
 
 void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
@@ -36,9 +36,9 @@ void RingFilter::sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, co
 
 void RingFilter::add_neighbours(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
                                 std::uint32_t capacity) {
-    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast,
-                          Uint<"side">{side}, Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin},
-                          Uint<"band">{band}, Uint<"capacity">{capacity}, arrival.blocks, sums_);
+    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast, Uint<"side">{side},
+                          Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin}, Uint<"band">{band},
+                          Uint<"capacity">{capacity}, arrival.blocks, sums_);
 }
 
 }  // namespace raya

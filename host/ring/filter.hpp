@@ -6,16 +6,16 @@
 
 namespace raya {
 
-using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&,
-                                            Uint<"side">, Uint<"distance">, Uint<"begin">, Uint<"band">,
-                                            Uint<"capacity">, const Buffer<float>&, Buffer<float>&>;
+using AddNeighboursKernel =
+    DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&, Uint<"side">, Uint<"distance">,
+                    Uint<"begin">, Uint<"band">, Uint<"capacity">, const Buffer<float>&, Buffer<float>&>;
 using TakeMeansKernel =
     DescribedKernel<"ring/filter.cl", "take_means", const Buffer<std::uint32_t>&, Uint<"capacity">, Buffer<float>&>;
 
 class RingFilter {
   public:
-    /// Takes the kernels, which are for one lane, launches each once for nothing (PoCL compiles at the first launch) and
-    /// takes the device memory.
+    /// Takes the kernels, which are for one lane, launches each once for nothing (PoCL compiles at the first launch)
+    /// and takes the device memory.
     RingFilter(Kernels& kernels, const ExchangeSetup& setup);
 
     /// Every pixel becomes the mean of its 3 x 3 neighbourhood. `pixels` is [PE][capacity][3]; afterwards it may name

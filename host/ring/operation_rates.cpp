@@ -32,8 +32,8 @@ std::array<double, kOperations.size()> operation_rates(Session& session, const N
         cl_uint rounds = 1000;
         const auto seconds = [&] {
             session.clear_profile();
-            session.launch("operations", kernel, items / group_size, group_size, Uint<"kind">{kind}, Uint<"rounds">{rounds}, 1.0f,
-                           results);
+            session.launch("operations", kernel, items / group_size, group_size, Uint<"kind">{kind},
+                           Uint<"rounds">{rounds}, 1.0f, results);
             return last_seconds(session);
         };
         seconds();  // PoCL compiles here

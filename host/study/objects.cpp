@@ -44,8 +44,7 @@ void add_primary_rays(Row& f, Session& session, Scene scene, std::uint32_t size,
     std::set<std::uint32_t> gone_on;  // pixels whose rays left the voxel by which they came in
     const TorusRun run =
         run_on_torus(session, {scene.name, scene}, size, plan_of_paper(), [&](const PacketRecord& record) {
-            if (raya_state_kind(record.head.state) == RAYA_KIND_PRIMARY)
-                gone_on.insert(record.head.pixel);
+            if (raya_state_kind(record.head.state) == RAYA_KIND_PRIMARY) gone_on.insert(record.head.pixel);
         });
     const EventCounts& e = run.result.events;
     const double walks = std::max(1.0, static_cast<double>(e[RAYA_WALKS]));

@@ -15,8 +15,8 @@ struct Contributions {
     std::vector<std::uint32_t> starts;  // where those of each pixel start
 };
 
-/// Takes return packets in any order. std::logic_error for a pixel beyond `pixels`, or two packets with the same place in
-/// a pixel's tree.
+/// Takes return packets in any order. std::logic_error for a pixel beyond `pixels`, or two packets with the same place
+/// in a pixel's tree.
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels);
 
 using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffer<float>&, const Buffer<std::uint32_t>&,

@@ -112,8 +112,9 @@ void NodeArray::route() {
 
 void NodeArray::accept(Room room, std::uint32_t superstep) {
     session_.launch("accept", accept_, nodes_, options_.group_size, memories_, starts_, run_, room,
-                    Uint<"turn">{superstep}, rays_.sent(), homeward_.sent(), LocalMemory<std::uint32_t>{options_.group_size}, queues_, rays_.inboxes(),
-                    homeward_.inboxes(), homeward_.outboxes(), returns_, status_, ended_);
+                    Uint<"turn">{superstep}, rays_.sent(), homeward_.sent(),
+                    LocalMemory<std::uint32_t>{options_.group_size}, queues_, rays_.inboxes(), homeward_.inboxes(),
+                    homeward_.outboxes(), returns_, status_, ended_);
 }
 
 std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {

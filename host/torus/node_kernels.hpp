@@ -24,12 +24,12 @@ using Returns = Buffer<raya_head>&;  // at the root
 using Status = Buffer<std::uint32_t>&;
 using Counters = Buffer<std::uint64_t>&;
 
-using Inject = DescribedKernel<"torus/inject.cl", "inject", Words, Words, Run, Own, Queues, Status, Counters, Counters,
-                               Counters>;
+using Inject =
+    DescribedKernel<"torus/inject.cl", "inject", Words, Words, Run, Own, Queues, Status, Counters, Counters, Counters>;
 using TraceVoxel = DescribedKernel<"torus/trace_voxel.cl", "trace_voxel", Words, Words, Run, Room, Own, Queues, Status,
                                    Counters, Counters, Counters>;
-using Route = DescribedKernel<"torus/route.cl", "route", Words, Words, Run, Own, Queues, Boxes, Boxes, Returns, Status,
-                              Counters>;
+using Route =
+    DescribedKernel<"torus/route.cl", "route", Words, Words, Run, Own, Queues, Boxes, Boxes, Returns, Status, Counters>;
 using Accept = DescribedKernel<"torus/accept.cl", "accept", Words, Words, Run, Room, Uint<"turn">, Words, Words, Own,
                                Queues, Boxes, Boxes, Boxes, Returns, Status, Counters>;
 

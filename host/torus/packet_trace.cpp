@@ -22,8 +22,7 @@ struct Lineage {
 // A return packet leaves the node that made it once and is nobody's parent, so its number need not be kept.
 Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
-    const RayName name = {record.head.pixel,
-                          RayName::place_of(record.head.path, raya_state_level(state)),
+    const RayName name = {record.head.pixel, RayName::place_of(record.head.path, raya_state_level(state)),
                           raya_state_light(state)};
     Lineage lineage;
     lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next() : numbers.number_of(name);

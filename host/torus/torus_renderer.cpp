@@ -139,9 +139,8 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     return result;
 }
 
-void TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
-                               const ProgressCallback& progress, const PacketWatch& packets,
-                               const SuperstepSink& step_sink) {
+void TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns, const ProgressCallback& progress,
+                               const PacketWatch& packets, const SuperstepSink& step_sink) {
     const StepLog::Step step = session.step("supersteps");
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);

@@ -127,9 +127,9 @@ void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t 
     const std::string name = fmt::format("{}, {} lane{}{}", format_name(answers.format), lanes, lanes == 1 ? "" : "s",
                                          trusted ? "" : ", division refined");
     v.check("number", name, [&](Session& session) {
-        const Program program = v.build(
-            session, "verify/operations.cl",
-            {.lanes = lanes, .format = answers.format, .exact_divide = trusted, .exact_fma = trusted});
+        const Program program =
+            v.build(session, "verify/operations.cl",
+                    {.lanes = lanes, .format = answers.format, .exact_divide = trusted, .exact_fma = trusted});
         const Rows rows = rows_of(answers);
         return compare(
             answers, rows, run_rows(session, program, rows, lanes), device,

@@ -35,8 +35,7 @@ std::uint64_t sum(const std::vector<std::uint64_t>& values) {
 // Which ray of which pixel: the records of one ray are the stages of its way.
 using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
 RayKey key_of(const PacketRecord& p) {
-    return {p.head.pixel, p.head.path, raya_state_level(state_of(p)),
-            raya_state_light(state_of(p))};
+    return {p.head.pixel, p.head.path, raya_state_level(state_of(p)), raya_state_light(state_of(p))};
 }
 
 std::map<RayKey, std::vector<PacketRecord>> ways_of(const std::vector<PacketRecord>& records) {

@@ -79,6 +79,14 @@ class Tree {
     std::vector<Sent> sent_;
 };
 
+raya_head head_of(std::uint32_t pixel, std::uint32_t state, std::uint32_t path) {
+    raya_head head{};
+    head.pixel = pixel;
+    head.state = state;
+    head.path = path;
+    return head;
+}
+
 // Numbers in the order in which a reader of the table meets the names.
 std::string expected_rows(const std::vector<Sent>& sent) {
     std::map<std::string, std::size_t> numbers;
@@ -115,7 +123,7 @@ TEST_CASE("rays and parents of random ray trees have the numbers of their names"
 TEST_CASE("a shadow ray's return before anything else, by hand", "[torus]") {
     PacketTrace trace;
     const auto row = [&](std::uint32_t kind, std::uint32_t level, std::uint32_t light, std::uint32_t path) {
-        trace.add({3, 1, 2, {9, raya_state(kind, level, light), path}});
+        trace.add({3, 1, 2, head_of(9, raya_state(kind, level, light), path)});
     };
     row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // of the refracted ray's shadow ray
     row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // which is 1, and shades 2
@@ -141,7 +149,7 @@ TEST_CASE("a head that no packet has is refused", "[torus]") {
     for (const std::uint32_t state : wrong) {
         CAPTURE(state);
         PacketTrace trace;
-        CHECK_THROWS_AS(trace.add({0, 0, 0, {0, state, 0}}), std::logic_error);
+        CHECK_THROWS_AS(trace.add({0, 0, 0, head_of(0, state, 0)}), std::logic_error);
     }
     CHECK_THROWS_AS(packet_kind_name(RAYA_KINDS), std::logic_error);
 }

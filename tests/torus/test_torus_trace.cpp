@@ -105,9 +105,8 @@ TEST_CASE("of every fourth superstep the same packets are told as of all", "[tor
                 {},
                 [&](const PacketRecord& p) {
                     if (p.superstep % 4 == 0)
-                        packets.push_back(
-                            fmt::format("{} {} {} {} {} {} {}", p.superstep, p.source, p.destination, p.head.pixel,
-                                        p.head.state, p.head.path, p.head.weight));
+                        packets.push_back(fmt::format("{} {} {} {} {} {} {}", p.superstep, p.source, p.destination,
+                                                      p.head.pixel, p.head.state, p.head.path, p.head.weight));
                     else
                         CHECK(every == 1);
                 },
