@@ -71,9 +71,8 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         .add_option(
             "--accel", o.accel,
             "grid: rays walk through voxels inside each PE's memory and meet the objects listed there, the same hits "
-            "sooner; A "
-            "x B x C voxels along x, y, z, by default some for each object; none: every ray is tested against all "
-            "objects")
+            "sooner; A x B x C voxels along x, y, z, by default some for each object; none: every ray is tested "
+            "against all objects")
         ->type_name("none|grid[:AxBxC]")
         ->capture_default_str();
     command

@@ -42,8 +42,7 @@ std::string profile_table(double build_s, const std::vector<ProgramBuild>& build
     }
     return build_line(build_s, builds) + text_table(rows) +
            "total, share, min, mean and max are from start to end; queue->submit and submit->start are means of what "
-           "came "
-           "before\n";
+           "came before\n";
 }
 
 Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {

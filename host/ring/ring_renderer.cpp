@@ -52,8 +52,7 @@ void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, cons
     if (traced == pixels) return;
     throw DeviceError(
         fmt::format("{} {} ended the trace kernel after {} of {} pixels; remedy: see what raya verify finds; more PEs "
-                    "(--pes), which "
-                    "leave each work-item fewer pixels and do not change the image, or another device",
+                    "(--pes), which leave each work-item fewer pixels and do not change the image, or another device",
                     device.platform, device.name, traced, pixels));
 }
 

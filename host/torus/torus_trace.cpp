@@ -156,10 +156,9 @@ void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t
         {"packets_sampled", packets_.size()},
         {"flows", flows},
         {"note",
-         "modelled time, from the trace's time 0 on, every superstep waiting for its busiest node and link; it "
-         "has nothing to do with the measured times above it. Packets are told of in every 16th superstep, in all with "
-         "--packets; a flow ends at the earliest superstep in which "
-         "its packet can arrive"}};
+         "modelled time, from the trace's time 0 on, every superstep waiting for its busiest node and link; it has "
+         "nothing to do with the measured times above it. Packets are told of in every 16th superstep, in all with "
+         "--packets; a flow ends at the earliest superstep in which its packet can arrive"}};
 }
 
 }  // namespace raya

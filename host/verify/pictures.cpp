@@ -17,8 +17,7 @@ namespace {
 
 constexpr const char* kHeading =
     "# Hashes and pixels of pictures, made by tests/verify/make_pictures.cpp: do not edit.\n"
-    "# \"NAME: HASH\"; then a line a row: bits of RED/GREEN/BLUE, hexadecimal digits of fp32 numbers without the "
-    "zeros "
+    "# \"NAME: HASH\"; then a line a row: bits of RED/GREEN/BLUE, hexadecimal digits of fp32 numbers without the zeros "
     "at their\n"
     "# ends; .: the same as on the left, =: as in the picture before.\n";
 
