@@ -12,8 +12,6 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/kernels/kernel_options.hpp"
-#include "host/kernels/kernel_source.hpp"
 #include "host/kernels/kernels.hpp"
 #include "tests/paths.h"
 
