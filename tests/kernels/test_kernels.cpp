@@ -21,7 +21,8 @@ struct ParameterName<Uint<Name>> {
     static constexpr const char* kText = Uint<Name>::kName;
 };
 
-// How many parameters are named; each has that name in the kernel's file, or the driver keeps no names.
+// How many parameters are named; each has that name in the kernel's file, or the driver keeps no names. PoCL 3.1 says
+// _cl_distance for `distance`, as a built-in function has that name.
 template <class... Params>
 int named_parameters(const Kernel<Params...>& kernel) {
     cl_uint index = 0;
@@ -29,7 +30,7 @@ int named_parameters(const Kernel<Params...>& kernel) {
     const auto check = [&](const std::string& expected) {
         const std::string name = argument_name(kernel.handle(), index);
         if (!expected.empty() && name != std::to_string(index)) {
-            CHECK(name == expected);
+            CHECK_THAT(name, Catch::EndsWith(expected));
             ++named;
         }
         ++index;
@@ -74,12 +75,12 @@ TEST_CASE("sources and more options reach every build", "[kernels]") {
     Session session(choose_device(""));
     const KernelSources sources{.patches = {{"torus/compose.cl", "void compose(", "void RAYA_NAME("}},
                                 .more_options = {"-DRAYA_NAME=decompose"}};
-    Kernels kernels(session, {.lanes = 4}, sources);
+    Kernels kernels(session, {.group_size = 4}, sources);
     using Renamed = DescribedKernel<"torus/compose.cl", "decompose", const Buffer<float>&, const Buffer<std::uint32_t>&,
                                     Uint<"pixels">, Buffer<float>&>;
     CHECK_NOTHROW(kernels.get<Renamed>());
     CHECK_THAT(kernels.program(Renamed::kFile).options(),
-               Catch::Contains("-DRAYA_LANES=4") && Catch::Contains("-DRAYA_NAME=decompose"));
+               Catch::Contains("-DRAYA_GROUP=4") && Catch::Contains("-DRAYA_NAME=decompose"));
     const Program own = kernels.build("own.cl", "#include \"kernels/torus/compose.cl\"\n");
     CHECK_NOTHROW(own.kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("decompose"));
     CHECK_THROWS_AS(Kernels(session, {.lanes = 3}), UserError);
