@@ -4,6 +4,7 @@
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
 #include "tests/ring/render_scene.hpp"
+#include "tests/thorough.hpp"
 #include "tests/torus/render_torus.hpp"
 
 namespace raya {
@@ -47,7 +48,7 @@ TEST_CASE("scenes of all kinds of objects look alike with a grid, in coarse form
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "e6m15t", "e5m10", "e8m12", "e5m6");
     SplitMix random(2026);
-    for (const std::uint64_t seed : kRichScenes) {
+    for (const std::uint64_t seed : quick_of(format == "fp32" || format == "e5m10" ? 3 : 1, kRichScenes)) {
         const Scene scene = random_view_scene(seed);
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
         const auto side = [&] { return 1 + static_cast<std::uint32_t>(random.next() % 9); };
@@ -66,7 +67,8 @@ TEST_CASE("tests and steps are counted for each ray, whatever lanes, groups and 
     const RingCase c{.width = 32, .height = 24, .pes = 8, .lanes = 1, .group = 1, .format = format};
     const EventCounts expected = render_with(session, scene, c, cut(5, 4, 6)).all.events;
     CHECK(expected[RAYA_STEPS] > expected[RAYA_WALKS]);
-    for (const auto& [lanes, group, pes] : {std::array{4u, 1u, 8u}, {8u, 3u, 32u}, {16u, 1u, 5u}, {1u, 16u, 1u}}) {
+    for (const auto& [lanes, group, pes] :
+         quick(2, {std::array{4u, 1u, 8u}, {1u, 16u, 1u}, {8u, 3u, 32u}, {16u, 1u, 5u}})) {
         CAPTURE(format, lanes, group, pes);
         RingCase other = c;
         other.lanes = lanes;
@@ -86,7 +88,7 @@ TEST_CASE("rays of how many trees and lights wait together changes no bit and no
     c.more_options = {"-DRAYA_TREES=1", "-DRAYA_BEAMS=1"};
     const RingResult one = render_with(session, scene, c, cut(6, 5, 4));
     CHECK(answer_of(one) == answer_of(plain));
-    for (const auto& [trees, beams] : {std::pair{"3", "2"}, {"2", "8"}, {"8", "7"}}) {
+    for (const auto& [trees, beams] : quick(1, {std::pair{"3", "2"}, {"2", "8"}, {"8", "7"}})) {
         c.more_options = {std::string("-DRAYA_TREES=") + trees, std::string("-DRAYA_BEAMS=") + beams};
         CAPTURE(format, c.more_options);
         const RingResult many = render_with(session, scene, c, cut(6, 5, 4));
@@ -119,7 +121,7 @@ Scene doubled_scene(std::uint64_t seed) {
 TEST_CASE("of objects at equal distances the lowest number is hit, in whichever voxels they are", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "spa22", "e5m6");
-    for (const std::uint64_t seed : kRichScenes) {
+    for (const std::uint64_t seed : quick_of(2, kRichScenes)) {
         const Scene scene = doubled_scene(seed);
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
         const std::string expected = answer_of(render_with(session, scene, c, {}));

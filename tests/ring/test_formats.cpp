@@ -7,6 +7,7 @@
 #include "host/scene/generate.hpp"
 #include "tests/reference/reference.hpp"
 #include "tests/ring/render_scene.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -40,8 +41,8 @@ Scene hard_spheres(std::uint32_t seed) {
 }  // namespace
 
 TEST_CASE("the sphere filter changes no bit of the image and no count", "[ring]") {
-    for (const char* format : {"spa22", "e6m15t", "e8m21", "e7m12", "e6m10"})
-        for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    for (const char* format : quick(2, {"spa22", "e6m10", "e8m21", "e7m12", "e6m15t"}))
+        for (const std::uint32_t seed : quick(1, {1u, 2u, 3u})) {
             CAPTURE(format, seed);
             const Scene scene = hard_spheres(seed);
             const RingResult plain =

@@ -8,6 +8,7 @@
 #include "host/scene/generate.hpp"
 #include "tests/paths.h"
 #include "tests/ring/render_scene.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -44,7 +45,7 @@ TEST_CASE("balls gives SPD's ray counts", "[ring]") {
     CHECK(e[RAYA_POLYGON_TESTS] == rays);
 }
 
-TEST_CASE("SPD's own files give SPD's ray counts, where they are at hand", "[ring]") {
+TEST_CASE("SPD's own files give SPD's ray counts, where they are at hand", "[.][long][ring]") {
     if (!std::filesystem::exists(spd_file("tetra.nff"))) {
         WARN("no SPD files: set RAYA_SPD_DIR to a folder with tetra.nff and mount.nff");
         return;

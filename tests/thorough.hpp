@@ -1,0 +1,34 @@
+// How much a test looks at: what one waits for, or everything.
+#pragma once
+#include <cstddef>
+#include <cstdlib>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+namespace raya {
+
+/// Whether RAYA_THOROUGH=1 is set, as ctest's entries labelled `long` do: all formats, lanes, scenes and random cases.
+/// Else few of each, so chosen that every kind of fault is still seen.
+inline bool thorough() {
+    const char* text = std::getenv("RAYA_THOROUGH");
+    return text != nullptr && std::string_view(text) == "1";
+}
+
+/// The first `few` of `all`, or all of them: for `for (... : quick(2, {...}))`.
+template <class T>
+std::vector<T> quick(std::size_t few, std::initializer_list<T> all) {
+    return {all.begin(), thorough() ? all.end() : all.begin() + few};
+}
+
+/// The same of a container.
+template <class Container>
+auto quick_of(std::size_t few, const Container& all) {
+    using std::begin;
+    return std::vector(begin(all), thorough() ? std::end(all) : begin(all) + few);
+}
+
+/// So many random cases.
+inline unsigned quick_cases(unsigned few, unsigned all) { return thorough() ? all : few; }
+
+}  // namespace raya
