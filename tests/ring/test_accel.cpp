@@ -33,6 +33,8 @@ TEST_CASE("a grid changes no bit of the image, whatever its voxels and the forma
     Session session(choose_device(""));
     const std::string name = GENERATE("centre", "glass", "polygons", "cones", "planes");
     const std::string format = GENERATE("fp32", "spa22");
+    // Each kind of object in one format, where one waits.
+    if (!thorough() && (format == "fp32") != (name == "glass" || name == "polygons")) return;
     const Scene scene = project_scene(name);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .format = format};
     const std::string expected = answer_of(render_with(session, scene, c, {}));
@@ -48,7 +50,7 @@ TEST_CASE("scenes of all kinds of objects look alike with a grid, in coarse form
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "e6m15t", "e5m10", "e8m12", "e5m6");
     SplitMix random(2026);
-    for (const std::uint64_t seed : quick_of(format == "fp32" || format == "e5m10" ? 3 : 1, kRichScenes)) {
+    for (const std::uint64_t seed : quick_of(format == "e6m15t" || format == "e5m6" ? 1 : 2, kRichScenes)) {
         const Scene scene = random_view_scene(seed);
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
         const auto side = [&] { return 1 + static_cast<std::uint32_t>(random.next() % 9); };
