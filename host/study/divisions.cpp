@@ -4,11 +4,12 @@
 #include <stdexcept>
 
 #include "host/scene/generate.hpp"
-#include "host/study/grid_papers.hpp"
 #include "host/study/grid_run.hpp"
+#include "host/study/paper.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
 
 namespace raya {
 namespace {
@@ -172,7 +173,7 @@ std::string finding_of_parts(const Series& series) {
 Scenes even_scenes() {
     Scenes scenes;
     for (const std::uint32_t k : {6, 8, 9, 10}) {
-        const Divisions d = divisions_of_power(k);
+        const Divisions d = near_cube(1u << k);
         scenes.push_back(
             {fmt::format("{} objects", 1u << k), generate_uniform(1 << k, {int(d[0]), int(d[1]), int(d[2])})});
     }
@@ -180,8 +181,6 @@ Scenes even_scenes() {
 }
 
 }  // namespace
-
-Divisions divisions_of_power(std::uint32_t k) { return {1u << (k + 2) / 3, 1u << (k + 1) / 3, 1u << k / 3}; }
 
 StudyPage divisions_page(std::uint32_t side, const std::vector<std::vector<GridRun>>& all, bool from_paper) {
     nlohmann::ordered_json settings = {{"size", side}, {"bounces", 0}, {"format", "fp32"}};
@@ -210,7 +209,7 @@ StudyPage study_divisions(Laboratory& lab, const Scenes& scenes) {
     for (const LabelledScene& scene : scenes.empty() ? even_scenes() : scenes) {
         all.emplace_back();
         for (std::uint32_t k = 0; k <= kMostPower; ++k)
-            all.back().push_back(run_grid(lab.session(), scene, divisions_of_power(k), {.side = side, .runs = 5}));
+            all.back().push_back(run_grid(lab.session(), scene, near_cube(1u << k), {.side = side, .runs = 5}));
     }
     return divisions_page(side, all, scenes.empty());
 }

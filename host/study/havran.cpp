@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "host/scene/generate.hpp"
-#include "host/study/grid_papers.hpp"
 #include "host/study/grid_run.hpp"
+#include "host/study/paper.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"

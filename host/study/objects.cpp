@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "host/study/object_scenes.hpp"
+#include "host/scene/spread.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"

@@ -12,10 +12,10 @@ namespace raya {
 
 /// A word, a count or a figure.
 struct Cell : std::variant<std::string, std::int64_t, double> {
-    Cell(std::string text) : variant(std::move(text)) {}
-    Cell(const char* text) : variant(std::string(text)) {}
-    Cell(std::integral auto count) : variant(static_cast<std::int64_t>(count)) {}
-    Cell(double value) : variant(value) {}
+    Cell(std::string text) : variant(std::move(text)) {}                           // NOLINT: implicit
+    Cell(const char* text) : variant(std::string(text)) {}                         // NOLINT: implicit
+    Cell(std::integral auto count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT: implicit
+    Cell(double value) : variant(value) {}                                         // NOLINT: implicit
 
     /// Of a count or a figure; std::bad_variant_access for a word.
     double number() const;

@@ -6,9 +6,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "host/report/text_tables.hpp"
 #include "host/report/whole_file.hpp"
 #include "host/study/rows.hpp"
-#include "host/study/text_tables.hpp"
 
 namespace raya {
 namespace {
@@ -134,12 +134,6 @@ void check_names(const StudyPage& page) {
 }
 
 }  // namespace
-
-std::vector<std::string> page_files(const StudyPage& page) {
-    std::vector<std::string> files = {page.name + ".md", page.name + ".json"};
-    for (const StudyTable& table : page.tables) files.push_back(table.name + ".csv");
-    return files;
-}
 
 std::string table_csv(const StudyTable& table) {
     std::string text = joined(table.columns, ",", [](const Heading& h) { return csv_field(h.text()); }) + '\n';

@@ -10,10 +10,6 @@
 
 namespace raya {
 
-/// The names of the files that write_page() writes besides the plots: NAME.md, NAME.json and TABLE.csv for each table.
-/// A command may try them with check_writable() before the work.
-std::vector<std::string> page_files(const StudyPage& page);
-
 /// One line for each row under the columns' names; numbers with all their digits, fields quoted as RFC 4180 says.
 std::string table_csv(const StudyTable& table);
 
@@ -27,9 +23,9 @@ nlohmann::ordered_json page_json(const StudyPage& page);
 /// wants them; the other files have all.
 std::string page_markdown(const StudyPage& page, const PlotOutcome& plots);
 
-/// Writes the page's files and draws its plots into `folder`, which must be there. Returns what became of the plots.
-/// Throws UserError for a file that cannot be written; std::invalid_argument for a table whose rows do not fit its
-/// columns or for two tables or two plots of one name, and then writes nothing.
+/// Writes NAME.md, NAME.json and TABLE.csv for each table and draws the plots into `folder`, which must be there.
+/// Returns what became of the plots. Throws UserError for a file that cannot be written; std::invalid_argument for a
+/// table whose rows do not fit its columns or for two tables or two plots of one name, and then writes nothing.
 PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& page);
 
 /// The story in order: title, question, the paper's figures beside ours and the first finding of each page, with links

@@ -53,10 +53,6 @@ std::string need_of_2d(const std::string& best, const std::vector<std::uint32_t>
 // Voxels in one machine.
 StudyFunction study_divisions, study_havran;
 
-/// 2^k voxels as near to a cube as powers of two allow, the longer sides along x, then y: 32 are 4 x 4 x 2, 1024 are 16
-/// x 8 x 8. k 0..24.
-Divisions divisions_of_power(std::uint32_t k);
-
 /// `all`: of each scene the divisions in ascending order, two at least. `from_paper`: the scenes are of the paper's
 /// kind, with as many objects as the paper has, so that its figures stand beside ours; the last has 1024.
 /// std::logic_error where 32 or 1024 divisions are missing then.

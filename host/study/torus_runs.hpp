@@ -22,7 +22,7 @@ struct TorusPlan {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     PixelSubset pixels = {};
-    std::uint32_t queue = 0;               // packets; 0: the renderer's default
+    std::uint32_t queue = 0;                    // packets; 0: the renderer's default
     std::optional<std::uint32_t> bounces = {};  // empty: the machine's
 };
 

@@ -5,8 +5,9 @@
 
 #include "host/machine/t805.hpp"
 #include "host/scene/generate.hpp"
-#include "host/study/grid_papers.hpp"
+#include "host/study/paper.hpp"
 #include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
 #include "tests/study/study_cases.hpp"
 
 namespace raya {
@@ -14,8 +15,7 @@ namespace {
 
 // As many sphere tests, steps and ms as told; a ray each.
 GridRun made_up(std::uint32_t power, std::uint64_t objects, std::uint64_t tests, std::uint64_t steps, double ms) {
-    GridRun run{
-        .label = fmt::format("{} objects", objects), .objects = objects, .divisions = divisions_of_power(power)};
+    GridRun run{.label = fmt::format("{} objects", objects), .objects = objects, .divisions = near_cube(1u << power)};
     run.events[RAYA_PRIMARY] = 1;
     run.events[RAYA_SPHERE_TESTS] = tests;
     run.events[RAYA_WALKS] = 1;
@@ -43,20 +43,6 @@ std::vector<std::vector<GridRun>> made_up_paper(const std::array<std::uint32_t, 
         }
     }
     return all;
-}
-
-TEST_CASE("divisions are the paper's, and powers of two as near to cubes as can be", "[study]") {
-    CHECK(divisions_of_power(0) == Divisions{1, 1, 1});
-    CHECK(divisions_of_power(5) == Divisions{4, 4, 2});
-    CHECK(divisions_of_power(6) == Divisions{4, 4, 4});
-    CHECK(divisions_of_power(8) == Divisions{8, 8, 4});
-    CHECK(divisions_of_power(10) == Divisions{16, 8, 8});
-    for (std::uint32_t k = 0; k <= 24; ++k) {
-        const Divisions d = divisions_of_power(k);
-        CAPTURE(k);
-        CHECK(d[0] * d[1] * d[2] == 1u << k);
-        CHECK((d[0] >= d[1] && d[1] >= d[2] && d[0] <= 2 * d[2]));
-    }
 }
 
 TEST_CASE("divisions tells where the least lies beside the paper's objects", "[study]") {

@@ -1,4 +1,4 @@
-// The pieces that every study's CSV, JSON and Markdown are made of.
+// The pieces that CSV, JSON and Markdown are made of.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -1,4 +1,4 @@
-#include "host/study/object_scenes.hpp"
+#include "host/scene/spread.hpp"
 
 #include <algorithm>
 #include <cmath>

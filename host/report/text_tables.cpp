@@ -1,4 +1,4 @@
-#include "host/study/text_tables.hpp"
+#include "host/report/text_tables.hpp"
 
 #include <fmt/format.h>
 
