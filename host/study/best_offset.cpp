@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-const std::string kName = "best-offset";
+constexpr const char* kName = "best-offset";
 
 // One scene, one number of PEs and one way of anti-aliasing.
 struct Choice {
@@ -103,7 +103,7 @@ std::vector<StudyTable> tables_of(const Choices& choices) {
                       {"its u", near(&OffsetTime::imbalance)},
                       {"p = sqrt(P)", [](const Choice& c) { return c.times[c.root].total_ms(); }, "ms"},
                       {"p = 0", [](const Choice& c) { return c.times[0].total_ms(); }, "ms"}}),
-            table_of(kName + "-all", "Every offset", all,
+            table_of(std::string(kName) + "-all", "Every offset", all,
                      {{"scene", [](const Tried& tried) { return tried.choice->scene; }},
                       {"PEs", [](const Tried& tried) { return tried.choice->pes; }},
                       {"anti-aliasing", [](const Tried& tried) { return tried.choice->antialias(); }},

@@ -1,6 +1,5 @@
 // Fig. 3 of Yoshitani & Yamazaki: divisions of space, by one machine.
 #include <cctype>
-#include <ranges>
 #include <stdexcept>
 
 #include "host/scene/generate.hpp"
@@ -32,6 +31,12 @@ constexpr const Subject &kModelled = kSubjects[0], &kTests = kSubjects[1], &kMea
 
 using Series = std::vector<GridRun>;
 
+Series flat(const std::vector<Series>& all) {
+    Series runs;
+    for (const Series& series : all) runs.insert(runs.end(), series.begin(), series.end());
+    return runs;
+}
+
 const GridRun* with_voxels(const Series& series, std::uint64_t voxels) {
     const auto found = std::ranges::find(series, voxels, &GridRun::voxels);
     return found == series.end() ? nullptr : &*found;
@@ -46,7 +51,7 @@ std::vector<StudyPlot> plots_of(const std::vector<Series>& all, bool from_paper)
     std::vector<StudyPlot> plots;
     for (const Subject& s : kSubjects)
         plots.push_back({s.plot, s.title, "divisions", s.y_label, Axes::kLogBoth,
-                         lines(std::views::join(all), &GridRun::label, &GridRun::voxels, s.figure)});
+                         lines(flat(all), &GridRun::label, &GridRun::voxels, s.figure)});
     if (from_paper)
         plots[0].series.push_back({"paper, 1024 objects, its machine",
                                    {double{paper::kFewDivisions}, double{paper::kManyDivisions}},
@@ -58,7 +63,7 @@ std::vector<StudyPlot> plots_of(const std::vector<Series>& all, bool from_paper)
 StudyTable table_of_runs(const std::vector<Series>& all) {
     const auto a_ray = [](double count, const GridRun& run) { return count * (1 / static_cast<double>(run.rays())); };
     return table_of(
-        "divisions", "Each number of objects and divisions", std::views::join(all),
+        "divisions", "Each number of objects and divisions", flat(all),
         {{"scene", &GridRun::label},
          {"divisions", &GridRun::voxels},
          {"A x B x C", &GridRun::sides},

@@ -17,7 +17,7 @@ using Cells = std::vector<std::vector<std::string>>;
 const char* clock_name(const FormatsStudy& study) { return study.device.profiling ? "device" : "host"; }
 
 // What CSV and JSON have of a row, both under these names; what is measured stands apart in JSON.
-const std::string kMeasured = "measured_";
+constexpr const char* kMeasured = "measured_";
 const std::vector<Column<FormatRow>>& columns() {
     static const std::vector<Column<FormatRow>> all = {
         {"format", [](const FormatRow& row) { return format_name(row.format); }},
@@ -29,8 +29,8 @@ const std::vector<Column<FormatRow>>& columns() {
         {"pixels_over", [](const FormatRow& row) { return row.difference.over; }},
         {"share_over", [](const FormatRow& row) { return row.difference.share_over; }},
         {"image_hash", &FormatRow::image_hash},
-        {kMeasured + "kernel_s", &FormatRow::kernel_s},
-        {kMeasured + "ratio_to_fp32", &FormatRow::ratio_to_fp32}};
+        {std::string(kMeasured) + "kernel_s", &FormatRow::kernel_s},
+        {std::string(kMeasured) + "ratio_to_fp32", &FormatRow::ratio_to_fp32}};
     return all;
 }
 
@@ -38,7 +38,7 @@ nlohmann::ordered_json row_json(const FormatRow& row) {
     nlohmann::ordered_json json;
     for (const auto& [name, figure, unit] : columns())
         if (name.starts_with(kMeasured))
-            json["measured"][name.substr(kMeasured.size())] = cell_json(figure(row));
+            json["measured"][name.substr(std::string_view(kMeasured).size())] = cell_json(figure(row));
         else
             json[name] = cell_json(figure(row));
     return json;

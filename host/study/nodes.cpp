@@ -1,6 +1,4 @@
 // 1 to 4096 transputers: how much faster, how even, how far do packets go, and what is it that stops the gain?
-#include <ranges>
-
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
@@ -76,8 +74,8 @@ SceneSeries series_of(Session& session, const LabelledScene& scene, const NodesS
             series_of(session, scene, s, true, Links::kTorus3d, three)};
 }
 
-StudyTable table_of_machines(const std::vector<Series>& all) {
-    return table_of("nodes", "Every machine", std::views::join(all),
+StudyTable table_of_machines(const Series& all) {
+    return table_of("nodes", "Every machine", all,
                     {{"scene", &Row::scene},
                      {"voxels", &Row::voxels},
                      {"links", &Row::links},
@@ -189,7 +187,7 @@ StudyPage nodes_page(Session& session, const Scenes& scenes, const NodesSettings
                                  {"format", "fp32"},
                                  {"bounces", machine_named("torus").bounces}},
                                 {{"launches", settings.most_launches}});
-    std::vector<Series> series;
+    Series machines;
     for (const auto& [three, two, fixed] : all) {
         for (const Series& s : {three, fixed}) {
             const Row& best = least(s, &Row::overlapped_ms);
@@ -199,9 +197,9 @@ StudyPage nodes_page(Session& session, const Scenes& scenes, const NodesSettings
         }
         page.findings.insert(page.findings.end(), {finding_of_speedup(fixed), finding_of_voxels(three, fixed),
                                                    finding_of_links(three, two), finding_of_balance(three, fixed)});
-        series.insert(series.end(), {three, two, fixed});
+        for (const Series& s : {three, two, fixed}) machines.insert(machines.end(), s.begin(), s.end());
     }
-    page.tables = {table_of_machines(series)};
+    page.tables = {table_of_machines(machines)};
     page.plots = plots_of(all);
     return page;
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kSides = kObjectSides;  // nodes along each axis too
 constexpr double kNoticed = 1.02;               // times as long: slower
-const std::string kEven = "even", kRandom = "random", kWithin = "random, none astride";
+constexpr const char *kEven = "even", *kRandom = "random", *kWithin = "random, none astride";
 
 // Means over the scenes of one kind and number of objects.
 struct Row {

@@ -8,7 +8,7 @@
 namespace raya {
 namespace {
 
-const std::string kName = "static-vs-dynamic";
+constexpr const char* kName = "static-vs-dynamic";
 constexpr std::uint32_t kFewest = 128, kMost = 16'384;  // PEs; the claim speaks of 128 and more
 
 // A strategy on one scene, or the bound of all.
@@ -58,7 +58,8 @@ std::vector<StudyTable> tables_of(const std::vector<SceneOutcomes>& scenes) {
         for (std::size_t s = 0; s < scene.strategies.size(); ++s)
             for (std::size_t n = 0; n < scene.pes.size(); ++n) cases.push_back({&scene, s, n});
     }
-    tables.push_back(table_of(kName + "-limits", "The first P at which the efficiency is under 90 % and under 50 %",
+    tables.push_back(table_of(std::string(kName) + "-limits",
+                              "The first P at which the efficiency is under 90 % and under 50 %",
                               where(cases, [](const Case& c) { return c.number == 0; }),
                               {{"scene", &Case::label},
                                {"strategy", &Case::name},

@@ -50,9 +50,9 @@ struct Figure {
     double (*ours)(const ModelledTime&);
     std::optional<double> paper[3];
 };
-const Figure kFigures[] = {{"ray tracing", tracing_ms, {paper::kTrace0Ms, std::nullopt, paper::kTrace16Ms}},
-                           {"filtering", filtering_ms, {paper::kFilter0Ms, paper::kFilter8Ms, paper::kFilter16Ms}},
-                           {"total", total_ms, {paper::kFiltered0Ms, std::nullopt, paper::kFiltered16Ms}}};
+constexpr Figure kFigures[] = {{"ray tracing", tracing_ms, {paper::kTrace0Ms, std::nullopt, paper::kTrace16Ms}},
+                               {"filtering", filtering_ms, {paper::kFilter0Ms, paper::kFilter8Ms, paper::kFilter16Ms}},
+                               {"total", total_ms, {paper::kFiltered0Ms, std::nullopt, paper::kFiltered16Ms}}};
 
 std::vector<Comparison> comparisons_of(const FilterStudy& study) {
     std::vector<Comparison> all;
