@@ -5,31 +5,12 @@
 #include <string>
 #include <vector>
 
-namespace raya {
+#include "host/checks/verdict.hpp"
 
-enum class Outcome { kPass, kFail, kSkip };
+namespace raya {
 
 /// "PASS", "FAIL", "SKIP".
 const char* outcome_name(Outcome outcome);
-
-/// What is wrong, for somebody who has to find out why. What is not known is empty.
-struct Fault {
-    std::string where{};                  // the first operation, ray, word or pixel that is wrong
-    std::string expected{}, got{};        // of it: bits, and what they mean
-    std::string options{};                // build options of the kernel
-    std::vector<std::string> remedies{};  // what to try, the likeliest first
-};
-
-/// How a check ended, in a line: what was compared, why it is skipped, or what is wrong.
-struct Verdict {
-    Outcome outcome = Outcome::kPass;
-    std::string told;
-    Fault fault{};  // of kFail
-};
-
-inline Verdict passed(std::string told) { return {Outcome::kPass, std::move(told)}; }
-inline Verdict skipped(std::string reason) { return {Outcome::kSkip, std::move(reason)}; }
-inline Verdict failed(std::string told, Fault fault) { return {Outcome::kFail, std::move(told), std::move(fault)}; }
 
 struct Check {
     std::string layer, name;  // "number", "e6m15, 16 lanes"

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
 #include <sstream>
 #include <stdexcept>
 
+#include "host/checks/words.hpp"
 #include "host/embedded.hpp"
-#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {
@@ -22,13 +21,12 @@ constexpr const char* kHeading =
     "# numbers; zeros at the end are left out.\n";
 
 std::size_t operation_number(const std::string& name) {
-    const auto found = std::find_if(kVerifiedOperations.begin(), kVerifiedOperations.end(),
-                                    [&](const VerifiedOperation& o) { return name == o.name; });
-    if (found == kVerifiedOperations.end()) throw std::logic_error("known answers: no operation " + name);
-    return static_cast<std::size_t>(found - kVerifiedOperations.begin());
+    for (std::size_t k = 0; k < kAnsweredOperations; ++k)
+        if (name == kNumberOperations[k].name) return k;
+    throw std::logic_error("known answers: no operation " + name);
 }
 
-KnownAnswer answer_of(const std::vector<std::string>& words, const VerifiedOperation& operation) {
+KnownAnswer answer_of(const std::vector<std::string>& words, const NumberOperation& operation) {
     if (words.size() != operation.operands + 1)
         throw std::logic_error(fmt::format("known answers: {} words for {}", words.size(), operation.name));
     KnownAnswer answer{{kOne, kOne, kOne}, word_of(words.back())};
@@ -38,15 +36,9 @@ KnownAnswer answer_of(const std::vector<std::string>& words, const VerifiedOpera
 
 }  // namespace
 
-std::size_t FormatAnswers::count() const {
-    std::size_t all = 0;
-    for (const auto& answers : operations) all += answers.size();
-    return all;
-}
-
 std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
     std::vector<FormatAnswers> all;
-    std::size_t operation = kVerifiedOperations.size();
+    std::size_t operation = 0;
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
         if (line.empty() || line[0] == '#') continue;
@@ -61,7 +53,7 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
             continue;
         }
         if (all.empty()) throw std::logic_error("known answers: a line before the first section");
-        all.back().operations[operation].push_back(answer_of(words, kVerifiedOperations[operation]));
+        all.back().operations[operation].push_back(answer_of(words, kNumberOperations[operation]));
     }
     return all;
 }
@@ -69,10 +61,10 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
 std::string known_answers_text(const std::vector<FormatAnswers>& all) {
     std::string text = kHeading;
     for (const FormatAnswers& answers : all)
-        for (std::size_t k = 0; k < kVerifiedOperations.size(); ++k) {
-            text += fmt::format("{} {}\n", format_name(answers.format), kVerifiedOperations[k].name);
+        for (std::size_t k = 0; k < kAnsweredOperations; ++k) {
+            text += fmt::format("{} {}\n", format_name(answers.format), kNumberOperations[k].name);
             for (const KnownAnswer& answer : answers.operations[k]) {
-                for (std::size_t i = 0; i < kVerifiedOperations[k].operands; ++i)
+                for (std::size_t i = 0; i < kNumberOperations[k].operands; ++i)
                     text += digits_of(answer.operands[i]) + ' ';
                 text += digits_of(answer.result) + '\n';
             }

@@ -7,27 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/number_format.hpp"
+#include "host/checks/numbers.hpp"
 
 namespace raya {
-
-/// An operation of kernels/verify/operations.cl; results lie in the order of this list.
-struct VerifiedOperation {
-    const char* name;
-    std::size_t operands;  // 1..3
-};
-inline constexpr std::array<VerifiedOperation, 12> kVerifiedOperations = {{{"add", 2},
-                                                                           {"sub", 2},
-                                                                           {"mul", 2},
-                                                                           {"div", 2},
-                                                                           {"sqrt", 1},
-                                                                           {"mad", 3},
-                                                                           {"mul_add", 3},
-                                                                           {"max", 2},
-                                                                           {"floor", 1},
-                                                                           {"round", 1},
-                                                                           {"from_index", 1},
-                                                                           {"power", 2}}};
 
 /// Bits of fp32 numbers; the operand of from_index is a whole number. Operands that the operation has not are 1.
 /// Any NaN will do where the result is one.
@@ -39,8 +21,7 @@ struct KnownAnswer {
 /// All answers of one format.
 struct FormatAnswers {
     NumberFormat format;
-    std::array<std::vector<KnownAnswer>, kVerifiedOperations.size()> operations;  // in the order above
-    std::size_t count() const;
+    std::array<std::vector<KnownAnswer>, kAnsweredOperations> operations;  // in the order of kNumberOperations
 };
 
 /// Reads the file: a line "FORMAT OPERATION" opens a section, each further line has the operands' and the result's

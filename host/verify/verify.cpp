@@ -34,10 +34,6 @@ void Verification::check(const std::string& layer, const std::string& name,
     if (sink_.finished) sink_.finished(checks_.back());
 }
 
-Program Verification::build(Session& session, const std::string& file, const KernelOptions& options) const {
-    return Kernels(session, options, settings_.sources).program(file);
-}
-
 KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size) const {
     return {.lanes = lanes ? lanes : settings_.lanes, .group_size = group_size, .sources = settings_.sources};
 }

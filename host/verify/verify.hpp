@@ -49,8 +49,7 @@ class Verification {
     /// Runs one check in a session of its own: a failed command may leave a context of no use.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
-    /// A program of kernels/.
-    Program build(Session& session, const std::string& file, const KernelOptions& options) const;
+    const KernelSources& sources() const { return settings_.sources; }
     /// The same for a renderer's kernels.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 
@@ -80,8 +79,7 @@ class Verification {
 // The layers, in the order in which they rest on each other.
 void verify_numbers(Verification& verification);
 void verify_geometry(Verification& verification);
-void verify_machines(Verification& verification);   // arithmetic, local memory
-void verify_transfers(Verification& verification);  // bus, ring, links: a part of verify_machines()
+void verify_machines(Verification& verification);
 void verify_images(Verification& verification);
 
 }  // namespace raya

@@ -58,7 +58,7 @@ inline std::vector<FoundHit> hits_of_one(KernelRunner& runner, const PackedJob& 
     const auto rays = runner.filled("rays", ray_words(aimed.rays));
     const auto objects = runner.filled("objects", aimed.objects);
     auto distances = runner.constant<float>("distances", aimed.rays.size(), 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, const Buffer<std::uint32_t>&, Buffer<float>&>(
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, const Buffer<std::uint32_t>&, Buffer<float>&>(
         "hits_of_one", aimed.rays.size(), job_buffer, rays, objects, distances);
     const std::vector<float> t = runner.read(distances);
     std::vector<FoundHit> hits;

@@ -1,5 +1,6 @@
-// Hits of one object alone. A work-group is one work-item, which takes the next V rays; `rays` holds origin, direction
-// and limit of each: [ray][7]. Sixteen rays in a row are for the same object; their number is a multiple of 16.
+// Hits of one object alone by given rays (kernels/checks/rays.clh). Sixteen rays in a row are for the same object; their
+// number is a multiple of 16.
+#include "kernels/checks/rays.clh"
 #include "kernels/geometry/scene.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
@@ -8,9 +9,8 @@ void hits_of_one(__global const uint* restrict job,
                  __global const uint* restrict objects,      // [ray / 16]: number in the job, no plane's
                  __global float* restrict distances) // [ray]: the limit where there is no hit
 {
-    const uint first = get_group_id(0) * RAYA_LANES;
-    __global const float* from = rays + first * 7;
-    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
+    const uint first = first_ray();
+    const ray r = load_ray(rays, first);
     const objects_words all = &((job_words)job)->objects;
     const uint object = objects[first / 16];
     const uint first_polygon = all->spheres + all->planes, first_cone = first_polygon + all->polygons;

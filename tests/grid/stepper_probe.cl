@@ -1,5 +1,6 @@
-// The walk through a grid as the ring's lanes take it (kernels/grid/stepper.clh), voxel by
-// voxel; buffers as in walk_probe.cl.
+// The walk through a grid as the ring's lanes take it (kernels/grid/stepper.clh), voxel by voxel; buffers as in
+// walk_probe.cl.
+#include "kernels/checks/rays.clh"
 #include "kernels/grid/stepper.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
@@ -9,10 +10,9 @@ void stepped_walks(__global const raya_grid* restrict grid,
                    __global uint* restrict voxels,  // [ray][most]
                    __global float* restrict leaves) // [ray][most]
 {
-    const uint first = get_group_id(0) * RAYA_LANES;
-    __global const float* from = rays + first * 7;
+    const uint first = first_ray();
     const raya_grid g = *grid;
-    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
+    const ray r = load_ray(rays, first);
     voxel_walk w = start_of_walk(r);
     real t_in, t_out;
     mask walking = meets_box(g, r, &w, &t_in, &t_out);

@@ -33,9 +33,9 @@ Walks plain_walks(KernelRunner& runner, const raya_grid& grid, const std::vector
     auto wide = runner.constant<std::uint32_t>("wide", count, 0);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
     auto leaves = runner.constant<float>("leaves", count * most, 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
-               Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
-                                                       leaves);
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
+                    Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
+                                                            leaves);
     return {runner.read(voxels), runner.read(leaves)};
 }
 
@@ -46,8 +46,9 @@ Walks stepped_walks(KernelRunner& runner, const raya_grid& grid, const std::vect
     const auto ray_buffer = runner.filled("rays", rays);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
     auto leaves = runner.constant<float>("leaves", count * most, 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
-        "stepped_walks", count, grid_buffer, ray_buffer, most, voxels, leaves);
+    runner
+        .run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
+            "stepped_walks", count, grid_buffer, ray_buffer, most, voxels, leaves);
     return {runner.read(voxels), runner.read(leaves)};
 }
 
@@ -64,7 +65,8 @@ std::size_t end_of_walk(const Walks& w, std::size_t ray, std::uint32_t most) {
 TEST_CASE("lanes step through the voxels of the walk, at the same t, whatever their number") {
     std::size_t steps = 0;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
-        KernelRunner plain("../grid/walk_probe.cl", {lanes, true}), stepped("../grid/stepper_probe.cl", {lanes, true});
+        KernelRunner plain("tests/grid/walk_probe.cl", {lanes, true}),
+            stepped("tests/grid/stepper_probe.cl", {lanes, true});
         for (std::uint64_t seed = 0; seed < kGrids; ++seed) {
             SplitMix random(seed);
             const raya_grid grid = random_grid(random);

@@ -39,14 +39,14 @@ Walks walk(KernelRunner& runner, const raya_grid& grid, const std::vector<float>
     auto wide = runner.constant<std::uint32_t>("wide", count, 0);
     auto voxels = runner.constant<std::uint32_t>("voxels", count * most, RAYA_NO_VOXEL);
     auto leaves = runner.constant<float>("leaves", count * most, 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
-               Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
-                                                       leaves);
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&,
+                    Buffer<std::uint32_t>&, Buffer<float>&>("walks", count, grid_buffer, ray_buffer, most, wide, voxels,
+                                                            leaves);
     auto again = runner.constant<float>("again", count * most, 0);
     auto nexts = runner.constant<std::uint32_t>("nexts", count * most, RAYA_NO_VOXEL);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, const Buffer<std::uint32_t>&,
-               Buffer<float>&, Buffer<std::uint32_t>&>("resumes", count, grid_buffer, ray_buffer, most, voxels, again,
-                                                       nexts);
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, const Buffer<std::uint32_t>&,
+                    Buffer<float>&, Buffer<std::uint32_t>&>("resumes", count, grid_buffer, ray_buffer, most, voxels,
+                                                            again, nexts);
     return {runner.read(wide), runner.read(voxels), runner.read(leaves), runner.read(again), runner.read(nexts)};
 }
 
@@ -162,7 +162,7 @@ void check_walk(const raya_grid& grid, const reference::Ray& ray, double limit, 
 }  // namespace
 
 TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
-    KernelRunner runner("../grid/walk_probe.cl", {1, true, {}});
+    KernelRunner runner("tests/grid/walk_probe.cl", {1, true, {}});
     std::size_t visits = 0, empty = 0;
     for (std::size_t seed = 0; seed < kGrids; ++seed) {
         const WalkCase c(seed);
@@ -180,7 +180,7 @@ TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
 }
 
 TEST_CASE("a walk that is taken up in any of its voxels goes on as before") {
-    KernelRunner runner("../grid/walk_probe.cl", {16, true, {}});
+    KernelRunner runner("tests/grid/walk_probe.cl", {16, true, {}});
     for (std::size_t seed = 0; seed < kGrids / 2; ++seed) {
         const WalkCase c(seed);
         const Walks walks = walk(runner, c.grid, c.words());
@@ -197,7 +197,7 @@ TEST_CASE("walks of all widths of lanes are the same to the bit") {
     std::vector<Walks> first;
     for (const Variant& variant : variants()) {
         CAPTURE(variant.name());
-        KernelRunner runner("../grid/walk_probe.cl", variant);
+        KernelRunner runner("tests/grid/walk_probe.cl", variant);
         constexpr std::size_t kFewGrids = 8;
         for (std::size_t seed = 0; seed < kFewGrids; ++seed) {
             const WalkCase c(seed);
@@ -213,7 +213,7 @@ TEST_CASE("walks of all widths of lanes are the same to the bit") {
 
 // A ray from beyond the reach, or of a direction that is too long or too short, and nothing else.
 TEST_CASE("rays whose hits may lie elsewhere are wide") {
-    KernelRunner runner("../grid/walk_probe.cl", {16, true, {}});
+    KernelRunner runner("tests/grid/walk_probe.cl", {16, true, {}});
     constexpr float kBeyond = 0x1.000002p3F, kLong = 1 + 0x1.8p-21F, kTooLong = 1 + 0x1.4p-20F,
                     kTooShort = 1 - 0x1.4p-20F;
     raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
@@ -242,7 +242,7 @@ TEST_CASE("rays of normalised directions, and those reflected once, are hardly e
     const raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     constexpr std::size_t kCount = 1 << 16;
     for (const char* format : {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10t"}) {
-        KernelRunner runner("../grid/walk_probe.cl", {4, true, parse_format(format)});
+        KernelRunner runner("tests/grid/walk_probe.cl", {4, true, parse_format(format)});
         SplitMix random(1);
         std::vector<float> arms;
         for (std::size_t i = 0; i < kCount * 2; ++i) {
@@ -252,7 +252,7 @@ TEST_CASE("rays of normalised directions, and those reflected once, are hardly e
         const auto grid_buffer = runner.filled("grid", grid_words(grid));
         const auto arm_buffer = runner.filled("arms", arms);
         auto wide = runner.constant<std::uint32_t>("wide", kCount * 2, 0);
-        runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&>(
+        runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&>(
             "made_directions", kCount, grid_buffer, arm_buffer, wide);
         const std::vector<std::uint32_t> found = runner.read(wide);
         std::array<std::size_t, 2> counts{};

@@ -1,12 +1,6 @@
-// The walk through a grid (kernels/grid/walk.clh), voxel by voxel. A work-group is one work-item, which takes the next
-// V rays; `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
+// The walk of given rays (kernels/checks/rays.clh) through a grid (kernels/grid/walk.clh), voxel by voxel.
+#include "kernels/checks/rays.clh"
 #include "kernels/grid/walk.clh"
-
-static inline ray load_ray(__global const float* rays, uint first) {
-    __global const float* from = rays + first * 7;
-    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
-    return r;
-}
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void walks(__global const raya_grid* restrict grid,
@@ -16,7 +10,7 @@ void walks(__global const raya_grid* restrict grid,
            __global uint* restrict voxels,  // [ray][most]: those that the walk is in, in order, then RAYA_NO_VOXEL
            __global float* restrict leaves) // [ray][most]: t at which it leaves each of them
 {
-    const uint first = get_group_id(0) * RAYA_LANES;
+    const uint first = first_ray();
     const raya_grid g = *grid;
     const ray r = load_ray(rays, first);
     store_index(wide + first, 1, choose_index(is_wide(g, r), (index)(1), (index)(0)));
@@ -39,7 +33,7 @@ void resumes(__global const raya_grid* restrict grid,
              __global float* restrict leaves,       // [ray][most]: t at which the ray leaves each voxel
              __global uint* restrict nexts)         // [ray][most]: the voxel after each
 {
-    const uint first = get_group_id(0) * RAYA_LANES;
+    const uint first = first_ray();
     const raya_grid g = *grid;
     const ray r = load_ray(rays, first);
     for (uint lane = 0; lane < RAYA_LANES; ++lane)
@@ -62,7 +56,7 @@ void made_directions(__global const raya_grid* restrict grid,
                      __global const float* restrict arms,  // [ray][6]: towards the direction, towards the normal
                      __global uint* restrict wide)         // [ray][2]: 0 or 1
 {
-    const uint first = get_group_id(0) * RAYA_LANES;
+    const uint first = first_ray();
     const vec zero = {num_all(0.0f), num_all(0.0f), num_all(0.0f)};
     const vec d = vec_normalize(load_vec(arms + first * 6, 6)), n = vec_normalize(load_vec(arms + first * 6 + 3, 6));
     const ray sent = {zero, d, num_all(1.0f)};

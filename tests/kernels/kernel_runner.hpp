@@ -1,4 +1,4 @@
-// Builds the test kernels of this folder for every width of lanes, with and without the compiler's optimiser.
+// Builds kernels of tests for every width of lanes, with and without the compiler's optimiser.
 #pragma once
 #include <fmt/format.h>
 
@@ -7,15 +7,19 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
+#include "host/checks/check_runner.hpp"
 #include "host/cl/commands.hpp"
 #include "host/kernels/kernels.hpp"
 #include "tests/paths.h"
 
 namespace raya {
+
+/// A session that is there before what is built in it.
+struct OwnSession {
+    Session session{choose_device("")};
+};
 
 /// One way to build a kernel. All ways must give the same bits.
 struct Variant {
@@ -35,67 +39,26 @@ inline const std::vector<Variant>& variants() {
     return all;
 }
 
-/// Rows of every test are a multiple of this, so that all widths take the same rows.
-inline constexpr std::size_t kMostLanes = 16;
-
-class KernelRunner {
+/// A program of kernels of its own on the default device.
+class KernelRunner : private OwnSession, public CheckRunner {
   public:
-    /// Builds a file, given from tests/kernels/ on. Throws std::runtime_error where it is missing, DeviceError where it
-    /// does not build.
+    /// Builds a file, a path from the project's root. Throws std::runtime_error where it is missing, DeviceError where
+    /// it does not build.
     KernelRunner(const std::string& file, const Variant& variant)
-        : lanes_(variant.lanes), session_(choose_device("")), program_(build(file, variant)) {}
-
-    /// A buffer that holds `values`.
-    template <class T>
-    Buffer<T> filled(const std::string& name, const std::vector<T>& values) {
-        Buffer<T> buffer = session_.buffer<T>(name, values.size());
-        session_.write(name, buffer, values);
-        return buffer;
-    }
-
-    /// A buffer of `size` elements that are all `value`.
-    template <class T>
-    Buffer<T> constant(const std::string& name, std::size_t size, T value) {
-        Buffer<T> buffer = session_.buffer<T>(name, size);
-        session_.fill(name, buffer, value);
-        return buffer;
-    }
-
-    template <class T>
-    std::vector<T> read(const Buffer<T>& buffer) {
-        std::vector<T> values(buffer.size());
-        session_.read(buffer.name(), buffer, values);
-        return values;
-    }
-
-    /// Runs a kernel that takes V rows of `rows` in each work-group of one work-item.
-    template <class... Args>
-    void run(const std::string& kernel_name, std::size_t rows, std::type_identity_t<Args>... args) {
-        if (rows % kMostLanes != 0) throw std::invalid_argument("rows must be a multiple of the widest lanes");
-        auto kernel = program_.kernel<Args...>(kernel_name);
-        session_.launch(kernel_name, kernel, rows / lanes_, 1, args...);
-    }
+        : CheckRunner(session, build(session, file, variant), variant.lanes) {}
 
   private:
-    static std::string text_of(const std::string& file) {
-        std::ifstream in(RAYA_SOURCE_DIR "/tests/kernels/" + file, std::ios::binary);
+    static Program build(Session& session, const std::string& file, const Variant& variant) {
+        std::ifstream in(RAYA_SOURCE_DIR "/" + file, std::ios::binary);
         if (!in) throw std::runtime_error("no test kernel " + file);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-
-    Program build(const std::string& file, const Variant& variant) {
         KernelOptions options;
         options.lanes = variant.lanes;
         options.format = variant.format;
         options.words_local = false;  // where the words lie is the ring's business, not that of the pieces
         KernelSources sources;
         if (!variant.optimised) sources.more_options = {"-cl-opt-disable"};
-        return Kernels(session_, options, sources).build("tests/kernels/" + file, text_of("lanes.clh") + text_of(file));
+        return Kernels(session, options, sources).build(file, {std::istreambuf_iterator<char>(in), {}});
     }
-
-    std::uint32_t lanes_;
-    Session session_;
-    Program program_;
 };
 
 }  // namespace raya

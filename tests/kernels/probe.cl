@@ -1,5 +1,5 @@
-// What the geometry and shading headers make of given rays. A work-group is one work-item, which takes the next V rays;
-// `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
+// What the geometry and shading headers make of given rays (kernels/checks/rays.clh), beside their hits.
+#include "kernels/checks/hits.cl"
 #include "kernels/shading/shade.clh"
 
 static inline void store_ray(__global float* to, uint stride, const tree_ray* r) {
@@ -8,31 +8,13 @@ static inline void store_ray(__global float* to, uint stride, const tree_ray* r)
     store_lanes(to + 6, stride, r->weight.all);
 }
 
-static inline ray load_ray(__global const float* rays, uint first) {
-    __global const float* from = rays + first * 7;
-    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
-    return r;
-}
-
-__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void closest_hits(__global const uint* restrict job,
-                  __global const float* restrict rays,
-                  __global uint* restrict objects,    // [ray]: number, RAYA_NO_OBJECT
-                  __global float* restrict distances) // [ray]
-{
-    const uint first = get_group_id(0) * RAYA_LANES;
-    const hit h = closest_hit(job, &((job_words)job)->objects, load_ray(rays, first));
-    store_index(objects + first, 1, h.object);
-    store_lanes(distances + first, 1, h.distance);
-}
-
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void find_places(__global const uint* restrict job,
                  __global const float* restrict rays,
                  __global uint* restrict leaving,  // [ray]: 0 or 1
                  __global float* restrict places)  // [ray][6][3]: P, P+, P-, G, N, colour; of a miss undefined
 {
-    const uint first = get_group_id(0) * RAYA_LANES;
+    const uint first = first_ray();
     const ray r = load_ray(rays, first);
     const objects_words all = &((job_words)job)->objects;
     const hit h = closest_hit(job, all, r);
@@ -56,7 +38,7 @@ void shade_once(__global const uint* restrict job,
                 __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: walking (0 or 1), level, waits, events
                 __global float* restrict numbers)  // [ray][17]: sum, ray followed now, ray that waits from `level`
 {
-    const uint first = get_group_id(0) * RAYA_LANES;
+    const uint first = first_ray();
     const ray r = load_ray(rays, first);
     tree t;
     clear_tree(&t);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/checks/hits.hpp"
 #include "host/scene/packer.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/reference/reference.hpp"
@@ -46,7 +47,7 @@ inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, flo
     return words;
 }
 
-inline constexpr std::uint32_t kNoObject = 0xffffffffu;
+inline constexpr std::uint32_t kNoObject = kNothing;
 
 struct ProbedHits {
     std::vector<std::uint32_t> objects;  // numbers in the job
@@ -55,14 +56,10 @@ struct ProbedHits {
 
 inline ProbedHits closest_hits(KernelRunner& runner, const std::vector<std::uint32_t>& job,
                                const std::vector<float>& rays) {
-    const std::size_t count = rays.size() / 7;
-    const auto job_buffer = runner.filled("job", job);
-    const auto ray_buffer = runner.filled("rays", rays);
-    auto objects = runner.constant<std::uint32_t>("objects", count, 0);
-    auto distances = runner.constant<float>("distances", count, 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&, Buffer<float>&>(
-        "closest_hits", count, job_buffer, ray_buffer, objects, distances);
-    return {runner.read(objects), runner.read(distances)};
+    const Hits hits = find_hits(runner, "hits_of_all", job, Rays{rays});
+    ProbedHits probed{hits.objects, {}};
+    for (const std::uint32_t bits : hits.distances) probed.distances.push_back(std::bit_cast<float>(bits));
+    return probed;
 }
 
 struct ProbedPlaces {
@@ -83,7 +80,7 @@ inline ProbedPlaces find_places(KernelRunner& runner, const std::vector<std::uin
     const auto ray_buffer = runner.filled("rays", rays);
     auto leaving = runner.constant<std::uint32_t>("leaving", count, 0);
     auto places = runner.constant<float>("places", count * 18, 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&, Buffer<float>&>(
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&, Buffer<float>&>(
         "find_places", count, job_buffer, ray_buffer, leaving, places);
     return {runner.read(leaving), runner.read(places)};
 }
@@ -122,8 +119,9 @@ inline ProbedSteps shade_once(KernelRunner& runner, const std::vector<std::uint3
     const auto ray_buffer = runner.filled("rays", rays);
     auto state = runner.constant<std::uint32_t>("state", count * ProbedSteps::kStateWords, 0);
     auto numbers = runner.constant<float>("numbers", count * ProbedSteps::kNumberWords, 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
-        "shade_once", count, job_buffer, ray_buffer, level, state, numbers);
+    runner
+        .run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
+            "shade_once", count, job_buffer, ray_buffer, level, state, numbers);
     return {runner.read(state), runner.read(numbers)};
 }
 

@@ -59,7 +59,7 @@ TEST_CASE("closest hits agree with the reference, with the same bits however the
     std::map<std::string, ProbedHits> first;
     std::string grazing;
     for (const Variant& variant : variants()) {
-        KernelRunner runner("probe.cl", variant);
+        KernelRunner runner("tests/kernels/probe.cl", variant);
         for (std::size_t k = 0; k < object_kinds().size(); ++k) {
             const ObjectKind& kind = object_kinds()[k];
             const std::uint64_t seed = 100 + k;
@@ -90,7 +90,7 @@ TEST_CASE("of equal distances the lowest object number wins", "[kernels]") {
     const std::vector<float> rays = ray_words(random_rays(22, 1600));
     const std::vector<int> single = object_numbers(once), numbers = object_numbers(twice);
     for (const std::uint32_t lanes : {1u, 16u}) {
-        KernelRunner runner("probe.cl", {lanes, true});
+        KernelRunner runner("tests/kernels/probe.cl", {lanes, true});
         const ProbedHits expected = closest_hits(runner, job_words(once), rays);
         const ProbedHits hits = closest_hits(runner, job_words(twice), rays);
         CHECK(bits(hits.distances) == bits(expected.distances));
@@ -107,7 +107,7 @@ TEST_CASE("a hit counts only nearer than the ray's limit", "[kernels]") {
     const std::vector<std::uint32_t> job = job_words(mixed_scene(kSeed));
     std::vector<float> rays = ray_words(random_rays(32, 1600));
     for (const std::uint32_t lanes : {1u, 16u}) {
-        KernelRunner runner("probe.cl", {lanes, true});
+        KernelRunner runner("tests/kernels/probe.cl", {lanes, true});
         const ProbedHits hits = closest_hits(runner, job, rays);
         std::vector<float> up_to_hit = rays, beyond_hit = rays;
         for (std::size_t i = 0; i < hits.distances.size(); ++i) {

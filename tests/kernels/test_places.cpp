@@ -106,7 +106,7 @@ TEST_CASE("places, normals, sides and colours agree with the reference, with the
     std::map<std::string, ProbedPlaces> first;
     std::string grazing;
     for (const Variant& variant : variants()) {
-        KernelRunner runner("probe.cl", variant);
+        KernelRunner runner("tests/kernels/probe.cl", variant);
         for (std::size_t k = 0; k < object_kinds().size(); ++k) {
             const ObjectKind& kind = object_kinds()[k];
             const std::uint64_t seed = 200 + k;

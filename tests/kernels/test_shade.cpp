@@ -152,7 +152,7 @@ TEST_CASE("a step of the walk agrees with the reference's formulas", "[kernels]"
     const std::vector<reference::Ray> rays = random_rays(kRaySeed, kRays);
     const std::vector<int> numbers = object_numbers(scene);
     const std::size_t faces = face_count(scene);
-    KernelRunner runner("probe.cl", variants().front());
+    KernelRunner runner("tests/kernels/probe.cl", variants().front());
     const ProbedHits hits = closest_hits(runner, job_words(scene), ray_words(rays));
     const ProbedSteps steps = shade_once(runner, job_words(scene), ray_words(rays), 0);
     const auto find = [&](const reference::Ray& ray) { return reference_step(scene, ray); };
@@ -181,7 +181,7 @@ TEST_CASE("a step at a deeper level differs in its level alone, and the last lev
     const std::vector<std::uint32_t> job = job_words(scene);
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kRays));
     const std::size_t faces = face_count(scene);
-    KernelRunner runner("probe.cl", variants().front());
+    KernelRunner runner("tests/kernels/probe.cl", variants().front());
     const ProbedSteps first = shade_once(runner, job, rays, 0), deeper = shade_once(runner, job, rays, 5);
     const ProbedSteps last = shade_once(runner, job, rays, kLastLevel);
     CHECK(bits(deeper.numbers) == bits(first.numbers));
@@ -200,7 +200,7 @@ TEST_CASE("a step gives the same bits however it is built", "[kernels]") {
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kRays));
     std::map<std::uint32_t, ProbedSteps> first;  // by level
     for (const Variant& variant : variants()) {
-        KernelRunner runner("probe.cl", variant);
+        KernelRunner runner("tests/kernels/probe.cl", variant);
         for (const std::uint32_t level : {0u, 5u, kLastLevel}) {
             CAPTURE(variant.name(), level, kSceneSeed, kRaySeed);
             const ProbedSteps steps = shade_once(runner, job, rays, level);

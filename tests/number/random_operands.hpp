@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "host/checks/numbers.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/number/mpfr_oracle.hpp"
-#include "tests/number/number_runner.hpp"
 
 namespace raya {
 
@@ -15,8 +15,8 @@ class RandomOperands {
     RandomOperands(const NumberFormat& format, std::uint64_t seed)
         : format_(format), range_(range_of(format)), random_(seed) {}
 
-    Operands rows(std::size_t count) {
-        Operands rows;
+    NumberRows rows(std::size_t count) {
+        NumberRows rows;
         for (std::size_t i = 0; i < count; ++i) {
             const float a = number(below(4) == 0 ? near_end() : any_exponent());
             const float b = number(partner(a));

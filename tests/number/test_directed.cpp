@@ -1,20 +1,20 @@
 // Cases whose results one can see: ties, carries, cancellation, the ends of the range, zeros. No oracle but the eye.
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "tests/number/compare.hpp"
+#include "tests/number/mpfr_oracle.hpp"
+#include "tests/number/number_runs.hpp"
 
 namespace raya {
 namespace {
 
-enum Operation : std::size_t { kAdd, kSub, kMul, kDiv, kSqrt, kMad };
-
 struct Case {
     const char* what;
-    Operation operation;
+    std::size_t operation;
     double a, b, c;
     double nearest, truncated;
 };
@@ -152,22 +152,22 @@ std::vector<Case> accumulations(const Landmarks& f) {
 }
 
 void check_cases(const NumberFormat& format, const std::vector<Case>& cases) {
-    Operands operands;
+    NumberRows rows;
     for (const Case& one : cases) {
         for (const double value : {one.a, one.b, one.c, format.truncates ? one.truncated : one.nearest}) {
             INFO(format_name(format) << ": " << one.what << " uses " << value);
             REQUIRE(static_cast<double>(round_to_format(value, format)) == value);
         }
-        operands.add(static_cast<float>(one.a), static_cast<float>(one.b), static_cast<float>(one.c));
+        rows.add(static_cast<float>(one.a), static_cast<float>(one.b), static_cast<float>(one.c));
     }
-    operands.pad();
-    const NumberBuild build = {format};
-    const Results results = NumberRunner(build).run("operations", operands, 6);
+    rows.pad();
+    const NumberResults results = run_numbers(number_build(format), rows, false);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const Case& one = cases[i];
         const auto expected = static_cast<float>(format.truncates ? one.truncated : one.nearest);
         const auto found = std::bit_cast<float>(results[one.operation][i]);
-        CAPTURE(build.name(), one.what, operation_names()[one.operation], one.a, one.b, one.c, found, expected);
+        CAPTURE(format_name(format), one.what, kNumberOperations[one.operation].name, one.a, one.b, one.c, found,
+                expected);
         CHECK(std::bit_cast<std::uint32_t>(found) == std::bit_cast<std::uint32_t>(expected));
     }
 }

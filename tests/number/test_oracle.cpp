@@ -1,10 +1,11 @@
-// The six operations of the reduced formats against MPFR, on random operands, by bits. RAYA_NUMBER_CASES=1000000 asks
+// The operations of the reduced formats against MPFR, on random operands, by bits. RAYA_NUMBER_CASES=1000000 asks
 // for that many rows in each format, for more formats and for all widths of lanes.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
 
-#include "tests/number/compare.hpp"
+#include "tests/number/erring_device.hpp"
+#include "tests/number/oracle_results.hpp"
 #include "tests/number/random_operands.hpp"
 
 namespace raya {
@@ -40,12 +41,12 @@ std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
 
 TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number][oracle]") {
     for (const NumberFormat& format : tested_formats()) {
-        const Operands operands = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
-        const Results expected = expected_results(format, operands);
+        const NumberRows rows = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
+        const std::vector<ExpectedNumbers> expected = expected_by_mpfr(format, rows);
         for (const std::uint32_t lanes : tested_lanes(format)) {
-            const NumberBuild build = {format, lanes};
+            const NumberBuild build = number_build(format, lanes);
             CAPTURE(build.name(), kSeed);
-            CHECK(report_differences(operands, NumberRunner(build).run("operations", operands, 6), expected) == "");
+            CHECK(wrong_numbers(build, rows, expected) == "");
         }
     }
 }
@@ -55,11 +56,10 @@ TEST_CASE("a device that errs in division and square root gives the same bits wh
          {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
         for (const std::uint32_t lanes : {1u, widest_lanes()}) {
             if (lanes == 1 && format.fraction_bits != 15) continue;
-            const Operands operands = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
-            const NumberBuild build = {format, lanes, true};
+            const NumberRows rows = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
+            const NumberBuild build = refined_build(format, lanes);
             CAPTURE(build.name(), kSeed);
-            CHECK(report_differences(operands, NumberRunner(build).run("operations", operands, 6),
-                                     expected_results(format, operands)) == "");
+            CHECK(wrong_numbers(build, rows, expected_by_mpfr(format, rows)) == "");
         }
 }
 

@@ -1,36 +1,61 @@
 // x^n, log2 and 2^y in the reduced formats keep the errors that kernels/number/README.md derives, whatever the lanes.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "host/scene/split_mix.hpp"
-#include "tests/number/compare.hpp"
+#include "tests/number/mpfr_oracle.hpp"
+#include "tests/number/number_runs.hpp"
 
 namespace raya {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
 constexpr std::size_t kRows = 8000;
+constexpr std::array<std::size_t, 3> kFunctions = {kPower, kLog2, kExp2};  // x^n, log2(x), 2^y of a row x, n, y
+
+double result_of(const NumberResults& results, std::size_t operation, std::size_t row) {
+    return std::bit_cast<float>(results[operation][row]);
+}
 
 /// x in (0, 4), a third of them crowded below 1; n in [0, 1000), many small; y in [-126, 0].
-Operands power_operands(const NumberFormat& format) {
+NumberRows power_rows(const NumberFormat& format) {
     SplitMix random(kSeed);
     const double smallest = std::ldexp(1, range_of(format).lowest);
     const auto in_format = [&](double value) { return round_to_format(value, format); };
-    Operands operands;
-    for (const float n : {0.0F, 1.0F, 8.0F}) operands.add(1, n, -n);
-    for (const float x : {0.5F, 2.0F, in_format(smallest)}) operands.add(x, 0, -0.5F);
-    while (operands.rows() < kRows) {
+    NumberRows rows;
+    for (const float n : {0.0F, 1.0F, 8.0F}) rows.add(1, n, -n);
+    for (const float x : {0.5F, 2.0F, in_format(smallest)}) rows.add(x, 0, -0.5F);
+    while (rows.count() < kRows) {
         const double crowded = 1 - std::exp2(random.uniform(-format.fraction_bits - 1, 0));
-        const double x = operands.rows() % 3 == 0 ? crowded : std::exp2(random.uniform(range_of(format).lowest, 2));
+        const double x = rows.count() % 3 == 0 ? crowded : std::exp2(random.uniform(range_of(format).lowest, 2));
         const double n = std::exp2(random.uniform(-3, 10));
-        const double y = random.uniform(operands.rows() % 2 == 0 ? -30 : -126, 0);
-        operands.add(in_format(std::max(x, smallest)), in_format(n), in_format(y));
+        const double y = random.uniform(rows.count() % 2 == 0 ? -30 : -126, 0);
+        rows.add(in_format(std::max(x, smallest)), in_format(n), in_format(y));
     }
-    operands.pad();
-    return operands;
+    rows.pad();
+    return rows;
+}
+
+/// x from 0x1p-126 to 2, crowded at 1; n of highlights; y from 0 to -126.
+NumberRows fp32_rows() {
+    std::vector<float> xs = {1, 2, std::nextafter(1.0F, 0.0F), std::sqrt(0.5F), 0x1p-126F, 1e-30F};
+    for (int i = 1; i <= 500; ++i) xs.push_back(static_cast<float>(i) / 500);
+    for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(1 - std::exp2(-24 + 0.06 * i)));  // crowded at 1
+    for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(std::exp2(-0.3 * i)));
+    const std::vector<float> ns = {0, 0.5F, 1, 3.08F, 11, 101.148F, 1000, 100'000};
+    NumberRows rows;
+    for (const float x : xs)
+        for (const float n : ns)
+            rows.add(x, n,
+                     static_cast<float>(-126.0 * static_cast<double>(rows.count()) /
+                                        static_cast<double>(xs.size() * ns.size())));
+    rows.pad();
+    return rows;
 }
 
 /// The bounds of kernels/number/README.md, "Powers".
@@ -62,8 +87,8 @@ const std::vector<NumberFormat>& power_formats() {
     return formats;
 }
 
-void check_row(const PowerBounds& bounds, double x, double n, double y, const Results& results, std::size_t i) {
-    const auto value = [&](std::size_t k) { return static_cast<double>(std::bit_cast<float>(results[k][i])); };
+void check_row(const PowerBounds& bounds, double x, double n, double y, const NumberResults& results, std::size_t i) {
+    const auto value = [&](std::size_t k) { return result_of(results, kFunctions[k], i); };
     const double log_x = std::log2(x), exponent = n * std::min(log_x, 0.0);
     CAPTURE(x, n, y, value(0), value(1), value(2));
     CHECK(std::abs(value(1) - log_x) <= bounds.log(log_x));
@@ -82,14 +107,42 @@ void check_row(const PowerBounds& bounds, double x, double n, double y, const Re
 
 TEST_CASE("powers keep the errors that they state, the same bits for all lanes", "[number][power]") {
     for (const NumberFormat& format : power_formats()) {
-        const Operands operands = power_operands(format);
-        const NumberBuild build = {format};
-        CAPTURE(build.name(), kSeed);
-        const Results results = NumberRunner(build).run("powers", operands, 3);
-        CHECK(NumberRunner({format, 1}).run("powers", operands, 3) == results);
+        const NumberRows rows = power_rows(format);
+        CAPTURE(format_name(format), kSeed);
+        const NumberResults results = run_numbers(number_build(format), rows, true);
+        const NumberResults single = run_numbers(number_build(format, 1), rows, true);
+        for (const std::size_t function : kFunctions) CHECK(single[function] == results[function]);
         const PowerBounds bounds(format);
-        for (std::size_t i = 0; i < operands.rows(); ++i)
-            check_row(bounds, operands.a[i], operands.b[i], operands.c[i], results, i);
+        for (std::size_t i = 0; i < rows.count(); ++i) check_row(bounds, rows.a[i], rows.b[i], rows.c[i], results, i);
+    }
+}
+
+TEST_CASE("in fp32 powers keep their errors however they are built", "[number][power]") {
+    // num_log2: the series leaves 8e-8 of the result, the roundings 1.7e-7. num_exp2: its Taylor series leaves
+    // (ln 2 / 2)^7 / 7! at f = -1/2, 1.7e-7 of the result, and the last additions 7e-8.
+    constexpr double kLogError = 2.5e-7, kExpError = 2.4e-7;
+    // The product n log2(x) is rounded too, so that 2^y is asked for at a y wrong by 3.1e-7 of it; the largest value of
+    // |y| ln 2 2^y is 1 / e. What is below 2^-30 is 0.
+    const double kPowerError = (kLogError + 0x1p-24) / std::exp(1.0) + kExpError + 0x1p-30;
+    const NumberRows rows = fp32_rows();
+    const NumberResults first = run_numbers(number_build({}, 1), rows, true);
+    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
+        for (const bool optimised : {true, false}) {
+            if (lanes > widest_lanes()) continue;
+            const NumberBuild build{.format = {}, .lanes = lanes, .optimised = optimised};
+            CAPTURE(build.name());
+            const NumberResults results = run_numbers(build, rows, true);
+            for (const std::size_t function : kFunctions) CHECK(results[function] == first[function]);
+        }
+    for (std::size_t i = 0; i < rows.count(); ++i) {
+        const double x = rows.a[i], n = rows.b[i], y = rows.c[i];
+        const double power = result_of(first, kPower, i), log = result_of(first, kLog2, i),
+                     exp = result_of(first, kExp2, i);
+        CAPTURE(x, n, y, power, log, exp);
+        CHECK(std::abs(power - std::pow(std::min(x, 1.0), n)) <= kPowerError);
+        CHECK(std::abs(log - std::log2(x)) <= kLogError * std::abs(std::log2(x)));
+        CHECK(std::abs(exp - std::exp2(y)) <= kExpError * std::exp2(y));
+        if (n == 0 || x >= 1) CHECK(power == 1);
     }
 }
 

@@ -1,13 +1,7 @@
-// Closest hits in one voxel of a torus node, and what lies there. A work-group is one work-item, which takes the next V
-// rays; `rays` holds origin, direction and limit of each: [ray][7]. The numbers of rays are multiples of V.
+// Closest hits of given rays (kernels/checks/rays.clh) in one voxel of a torus node, and what lies there.
+#include "kernels/checks/rays.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/node.h"
-
-static inline ray load_ray(__global const float* rays, uint first) {
-    __global const float* from = rays + first * 7;
-    const ray r = {load_vec(from, 7), load_vec(from + 3, 7), load_lanes(from + 6, 7)};
-    return r;
-}
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void voxel_hits(__global const uint* restrict memories,  // of all nodes
@@ -22,7 +16,7 @@ void voxel_hits(__global const uint* restrict memories,  // of all nodes
     __global const raya_node* const node = (__global const raya_node*)scene;
     __global const raya_voxel_memory* const voxels = (__global const raya_voxel_memory*)(scene + node->voxels_at);
     const objects_words all = voxel < node->voxels ? &voxels[voxel].objects : &node->job.objects;
-    const uint first = get_group_id(0) * RAYA_LANES;
+    const uint first = first_ray();
     const ray r = load_ray(rays, first);
     const hit h = closest_hit(scene, all, r);
     store_index(objects + first, 1, h.object);

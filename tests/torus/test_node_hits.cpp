@@ -27,9 +27,9 @@ VoxelHits voxel_hits(KernelRunner& runner, const NodeMemories& memories, std::ui
     auto objects = runner.constant<std::uint32_t>("objects", count, 0);
     auto distances = runner.constant<float>("distances", count, 0);
     auto places = runner.constant<float>("places", count * 9, 0);
-    runner.run<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, cl_uint, Buffer<std::uint32_t>&,
-               Buffer<float>&, Buffer<float>&>("voxel_hits", count, words, ray_buffer, memories.starts[node], voxel,
-                                               objects, distances, places);
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, cl_uint, Buffer<std::uint32_t>&,
+                    Buffer<float>&, Buffer<float>&>("voxel_hits", count, words, ray_buffer, memories.starts[node],
+                                                    voxel, objects, distances, places);
     return {runner.read(objects), runner.read(distances), runner.read(places)};
 }
 
@@ -101,7 +101,7 @@ VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector
 TEST_CASE("rays hit in a node's voxels what they hit in a job of the same objects", "[torus]") {
     std::size_t struck = 0, copies = 0;
     for (const std::uint32_t lanes : {1u, 16u}) {
-        KernelRunner of_job("probe.cl", {lanes, true}), of_node("../torus/probe.cl", {lanes, true});
+        KernelRunner of_job("tests/kernels/probe.cl", {lanes, true}), of_node("tests/torus/probe.cl", {lanes, true});
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
             SplitMix random(100 * lanes + seed);
             const Scene scene = uncut(scene_by_lot(random, 4));
@@ -131,7 +131,7 @@ TEST_CASE("rays hit in a node's voxels what they hit in a job of the same object
 }
 
 TEST_CASE("where every voxel has every object, every voxel's hits are the job's", "[torus]") {
-    KernelRunner of_job("probe.cl", {16, true}), of_node("../torus/probe.cl", {16, true});
+    KernelRunner of_job("tests/kernels/probe.cl", {16, true}), of_node("tests/torus/probe.cl", {16, true});
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SplitMix random(seed);
         const PackedJob job = pack(scene_by_lot(random, 4));  // patches that are cut among them

@@ -9,7 +9,7 @@ inline const SourcePatch kRoundingFault{"number/reduced.clh", "even = ~(bits <<"
 /// The compiler may fuse a b + c.
 inline const SourcePatch kContractionFault{"number/lanes.clh", "FP_CONTRACT OFF", "FP_CONTRACT ON"};
 /// The device divides by the reciprocal.
-inline const SourcePatch kDivisionFault{"number/divide.clh", "((a) / (b))", "((a) * (1.0f / (b)))"};
+inline const SourcePatch kDivisionFault{"number/divide.clh", "return a / b;", "return a * (1.0f / b);"};
 /// Of equal distances the last object wins.
 inline const SourcePatch kTieFault{"geometry/sphere.clh", "& (t < h.distance)",
                                    "& ((t < h.distance) | ((t == h.distance) & (h.object != RAYA_NO_OBJECT)))"};
@@ -20,7 +20,7 @@ inline const SourcePatch kWalkFault{"grid/walk.clh", "raya_voxel_plane(g, axis, 
 inline const SourcePatch kMappingFault{"shared/ratios.h", "(raya_u64)a * b / c", "a * b / c"};
 /// Work-items read before all have written.
 inline const SourcePatch kBarrierFault{
-    "verify/machine.cl", "words - 1 - w] + 1;\n        barrier(CLK_LOCAL_MEM_FENCE);", "words - 1 - w] + 1;"};
+    "checks/machine.cl", "words - 1 - w] + 1;\n        barrier(CLK_LOCAL_MEM_FENCE);", "words - 1 - w] + 1;"};
 /// The filter takes the right border for the middle.
 inline const SourcePatch kBorderFault{"ring/filter.cl", "raya_has_neighbour(m, pixel, RAYA_RIGHT)", "1"};
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/verify/known_answers.hpp"
+#include "tests/number/oracle_results.hpp"
 #include "tests/number/random_operands.hpp"
 #include "tests/verify/exact_value.hpp"
 
@@ -22,31 +23,20 @@ class AnswerMaker {
   public:
     AnswerMaker(Oracle& oracle, const NumberFormat& format) : oracle_(oracle), format_(format) {}
 
-    /// The result of an operation of kVerifiedOperations.
-    float result(const std::string& name, float a, float b, float c) {
-        if (name == "add") return oracle_.add(a, b);
-        if (name == "sub") return oracle_.sub(a, b);
-        if (name == "mul") return oracle_.mul(a, b);
-        if (name == "div") return oracle_.div(a, b);
-        if (name == "sqrt") return oracle_.sqrt(a);
-        if (name == "mad") return oracle_.mad(a, b, c);
-        if (name == "mul_add") return oracle_.add(oracle_.mul(a, b), c);
-        if (name == "max") return a > b ? a : b;
-        if (name == "floor") return std::floor(a);
-        if (name == "round") return oracle_.round(a);
-        if (name == "from_index") return oracle_.round(std::bit_cast<std::uint32_t>(a));
-        return power(a, b);
+    float result(std::size_t operation, float a, float b, float c) {
+        return operation == kPower ? power(a, b) : oracle_result(oracle_, operation, a, b, c);
     }
 
     /// What is remarkable about this row; rows of the same features say the same.
-    std::set<std::string> features(const std::string& name, float a, float b, float c) {
-        const float expected = result(name, a, b, c);
-        exact(name, a, b, c);
+    std::set<std::string> features(std::size_t operation, float a, float b, float c) {
+        const float expected = result(operation, a, b, c);
+        exact(operation, a, b, c);
         std::set<std::string> all = features_of(exact_, expected, format_);
         // What a compiler or a device may do in place of the operation.
-        if ((name == "mad" || name == "mul_add") && differ(oracle_.mad(a, b, c), oracle_.add(oracle_.mul(a, b), c)))
+        if ((operation == kMad || operation == kMulAdd) &&
+            differ(oracle_.mad(a, b, c), oracle_.add(oracle_.mul(a, b), c)))
             all.insert(kOtherWay);
-        if (name == "div" && differ(expected, oracle_.mul(a, oracle_.div(1, b)))) all.insert(kOtherWay);
+        if (operation == kDiv && differ(expected, oracle_.mul(a, oracle_.div(1, b)))) all.insert(kOtherWay);
         const double largest = format_.is_fp32() ? INFINITY : largest_number();
         if (std::abs(expected) == largest) all.insert(std::signbit(expected) ? "largest -" : "largest +");
         if (std::fpclassify(expected) == FP_SUBNORMAL) all.insert("denormal");
@@ -62,29 +52,29 @@ class AnswerMaker {
     }
 
     // The exact value of operations with one rounding; of the others, their result.
-    void exact(const std::string& name, float a, float b, float c) {
+    void exact(std::size_t operation, float a, float b, float c) {
         Mpfr x(24), y(24), z(24);
         mpfr_set_flt(x, a, MPFR_RNDN);
         mpfr_set_flt(y, b, MPFR_RNDN);
         mpfr_set_flt(z, c, MPFR_RNDN);
-        if (name == "add")
+        if (operation == kAdd)
             mpfr_add(exact_, x, y, MPFR_RNDZ);
-        else if (name == "sub")
+        else if (operation == kSub)
             mpfr_sub(exact_, x, y, MPFR_RNDZ);
-        else if (name == "mul")
+        else if (operation == kMul)
             mpfr_mul(exact_, x, y, MPFR_RNDZ);
-        else if (name == "div")
+        else if (operation == kDiv)
             mpfr_div(exact_, x, y, MPFR_RNDZ);
-        else if (name == "sqrt")
+        else if (operation == kSqrt)
             mpfr_sqrt(exact_, x, MPFR_RNDZ);
-        else if (name == "mad")
+        else if (operation == kMad)
             mpfr_fma(exact_, x, y, z, MPFR_RNDZ);
-        else if (name == "round")
+        else if (operation == kRound)
             mpfr_set(exact_, x, MPFR_RNDZ);
-        else if (name == "from_index")
+        else if (operation == kFromIndex)
             mpfr_set_ui(exact_, std::bit_cast<std::uint32_t>(a), MPFR_RNDZ);
         else
-            mpfr_set_flt(exact_, result(name, a, b, c), MPFR_RNDZ);
+            mpfr_set_flt(exact_, result(operation, a, b, c), MPFR_RNDZ);
     }
 
     // kernels/number/power.clh, operation by operation.
@@ -148,19 +138,19 @@ inline std::vector<float> landmarks(const NumberFormat& format) {
 }
 
 /// Operands that may be worth a row: [row][3].
-inline std::vector<std::array<float, 3>> candidates(const std::string& operation, const NumberFormat& format) {
+inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const NumberFormat& format) {
     constexpr std::uint64_t kSeed = 19'930;
     constexpr std::size_t kRandomRows = 3000;
     std::vector<std::array<float, 3>> all;
     SplitMix random(kSeed);
-    if (operation == "from_index") {
+    if (operation == kFromIndex) {
         const auto add = [&](std::uint32_t number) { all.push_back({std::bit_cast<float>(number), 1, 1}); };
         for (std::uint32_t bit = 1; bit < 1u << 24; bit *= 2)
             for (const std::uint32_t number : {bit - 1, bit, bit + 1, bit + bit / 2}) add(number);
         for (std::size_t i = 0; i < kRandomRows; ++i) add(static_cast<std::uint32_t>(random.next() >> 40));
         return all;
     }
-    if (operation == "power") {
+    if (operation == kPower) {
         for (const float x : {1.0F, 0.75F, 0.0078125F, 2.0F})
             for (const float n : {0.0F, 1.0F, 50.0F}) all.push_back({x, n, 1});
         const auto rounded = [&](double value) {
@@ -171,9 +161,9 @@ inline std::vector<std::array<float, 3>> candidates(const std::string& operation
         return all;
     }
     // By lot first: their operands are richer than the landmarks, which have the features that are left.
-    const NumberFormat drawn = operation == "round" ? NumberFormat{} : format;  // what is rounded is any fp32 number
-    const Operands rows = RandomOperands(drawn, kSeed).rows(kRandomRows);
-    for (std::size_t i = 0; i < rows.rows(); ++i) all.push_back({rows.a[i], rows.b[i], rows.c[i]});
+    const NumberFormat drawn = operation == kRound ? NumberFormat{} : format;  // what is rounded is any fp32 number
+    const NumberRows rows = RandomOperands(drawn, kSeed).rows(kRandomRows);
+    for (std::size_t i = 0; i < rows.count(); ++i) all.push_back({rows.a[i], rows.b[i], rows.c[i]});
     const std::vector<float> marks = landmarks(format);
     for (const float a : marks)
         for (const float b : marks)
@@ -185,23 +175,23 @@ inline std::vector<std::array<float, 3>> candidates(const std::string& operation
 template <class Oracle>
 std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t operation, const NumberFormat& format) {
     const auto enough = [](const std::string& feature) { return feature == kOtherWay || feature == kTwice ? 6 : 2; };
-    const VerifiedOperation& op = kVerifiedOperations[operation];
+    const std::size_t operands = kNumberOperations[operation].operands;
     std::map<std::string, int> seen;
     std::set<std::array<std::uint32_t, 3>> taken;
     std::vector<KnownAnswer> answers;
-    for (auto [a, b, c] : candidates(op.name, format)) {
+    for (auto [a, b, c] : candidates(operation, format)) {
         // num_round is for normal numbers and zeros.
-        if (std::string(op.name) == "round" && (std::fpclassify(a) == FP_SUBNORMAL || std::isinf(a))) continue;
-        if (op.operands < 2) b = 1;
-        if (op.operands < 3) c = 1;
-        bool wanted = op.name == std::string("power");  // all: its candidates are chosen
-        const std::set<std::string> features = maker.features(op.name, a, b, c);
+        if (operation == kRound && (std::fpclassify(a) == FP_SUBNORMAL || std::isinf(a))) continue;
+        if (operands < 2) b = 1;
+        if (operands < 3) c = 1;
+        bool wanted = operation == kPower;  // all: its candidates are chosen
+        const std::set<std::string> features = maker.features(operation, a, b, c);
         for (const std::string& feature : features) wanted = wanted || seen[feature] < enough(feature);
         const std::array<std::uint32_t, 3> bits = {std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b),
                                                    std::bit_cast<std::uint32_t>(c)};
         if (!wanted || !taken.insert(bits).second) continue;
         for (const std::string& feature : features) ++seen[feature];
-        float result = maker.result(op.name, a, b, c);
+        float result = maker.result(operation, a, b, c);
         if (std::isnan(result)) result = std::bit_cast<float>(0x7fc00000u);  // one NaN for all
         answers.push_back({bits, std::bit_cast<std::uint32_t>(result)});
     }
@@ -212,7 +202,7 @@ template <class Oracle>
 FormatAnswers answers_by(Oracle& oracle, const NumberFormat& format) {
     AnswerMaker<Oracle> maker(oracle, format);
     FormatAnswers all{format, {}};
-    for (std::size_t k = 0; k < kVerifiedOperations.size(); ++k) all.operations[k] = choose_answers(maker, k, format);
+    for (std::size_t k = 0; k < kAnsweredOperations; ++k) all.operations[k] = choose_answers(maker, k, format);
     return all;
 }
 

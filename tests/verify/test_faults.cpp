@@ -120,12 +120,10 @@ TEST_CASE("a kernel that does nothing finds no right answers", "[verify][faults]
         const char *file, *kernel, *only;
         std::size_t wrong;
     };
-    const Row rows[] = {{"verify/hits.cl", "hits_of_all", ", fp32", 5},
-                        {"verify/hits.cl", "hits_by_grid", ", fp32", 5},
-                        {"verify/machine.cl", "find_owners", "mapping", 7},
-                        {"verify/machine.cl", "find_ways", "ways", 1},
-                        {"verify/machine.cl", "turn_round", "local memory", 2},
-                        {"verify/operations.cl", "operations", "number fp32", 1}};
+    const Row rows[] = {
+        {"checks/hits.cl", "hits_of_all", ", fp32", 5},         {"checks/hits.cl", "hits_by_grid", ", fp32", 5},
+        {"checks/machine.cl", "find_owners", "mapping", 7},     {"checks/machine.cl", "find_ways", "ways", 1},
+        {"checks/machine.cl", "turn_round", "local memory", 2}, {"checks/numbers.cl", "operations", "number fp32", 1}};
     for (const Row& row : rows) {
         CAPTURE(row.kernel);
         const auto checks = run({emptied(row.file, row.kernel)}, row.only);

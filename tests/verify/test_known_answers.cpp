@@ -3,8 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tests/cli/run_program.hpp"
-#include "tests/paths.h"
+#include "host/embedded.hpp"
 #include "tests/verify/make_known_answers.hpp"
 
 namespace raya {
@@ -12,31 +11,14 @@ namespace {
 
 float value(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
-// What the host's fp32 makes of a row; of power, what the file says.
-float host_result(const std::string& name, const KnownAnswer& answer) {
-    const float a = value(answer.operands[0]), b = value(answer.operands[1]), c = value(answer.operands[2]);
-    if (name == "add") return a + b;
-    if (name == "sub") return a - b;
-    if (name == "mul") return a * b;
-    if (name == "div") return a / b;
-    if (name == "sqrt") return std::sqrt(a);
-    if (name == "mad") return std::fma(a, b, c);
-    if (name == "mul_add") return static_cast<float>(a * b) + c;
-    if (name == "max") return a > b ? a : b;
-    if (name == "floor") return std::floor(a);
-    if (name == "round") return a;
-    if (name == "from_index") return static_cast<float>(answer.operands[0]);
-    return value(answer.result);
-}
-
 }  // namespace
 
 TEST_CASE("the file of known answers is what its program makes", "[verify]") {
-    CHECK(file_contents(RAYA_SOURCE_DIR "/host/verify/known_answers.csv") == make_known_answers());
+    CHECK(embedded_files().at("host/verify/known_answers.csv") == make_known_answers());
 }
 
 TEST_CASE("known answers come back from their text", "[verify]") {
-    const std::string text = file_contents(RAYA_SOURCE_DIR "/host/verify/known_answers.csv");
+    const std::string text = embedded_files().at("host/verify/known_answers.csv");
     CHECK(known_answers_text(parse_known_answers(text)) == text);
     CHECK(text.size() < 65'536);  // small enough to be carried in the program
 }
@@ -44,10 +26,13 @@ TEST_CASE("known answers come back from their text", "[verify]") {
 TEST_CASE("known answers in fp32 are the host's", "[verify]") {
     const FormatAnswers& fp32 = known_answers().front();
     REQUIRE(fp32.format.is_fp32());
-    for (std::size_t k = 0; k < kVerifiedOperations.size(); ++k)
+    HostOracle host;
+    for (std::size_t k = 0; k < kPower; ++k)
         for (const KnownAnswer& answer : fp32.operations[k]) {
-            CAPTURE(kVerifiedOperations[k].name, answer.operands, answer.result);
-            const float expected = host_result(kVerifiedOperations[k].name, answer), found = value(answer.result);
+            CAPTURE(kNumberOperations[k].name, answer.operands, answer.result);
+            const auto operand = [&](std::size_t i) { return value(answer.operands[i]); };
+            const float expected = oracle_result(host, k, operand(0), operand(1), operand(2)),
+                        found = value(answer.result);
             if (std::isnan(expected))
                 CHECK(std::isnan(found));
             else
@@ -64,10 +49,10 @@ TEST_CASE("every format has answers of every operation, ties and both ends of th
         std::set<std::string> seen;
         if (!answers.format.is_fp32()) {
             AnswerMaker<MpfrOracle> maker(oracle, answers.format);
-            for (std::size_t k : {0u, 2u, 3u, 5u})
+            for (const std::size_t k : {kAdd, kMul, kDiv, kMad})
                 for (const KnownAnswer& a : answers.operations[k])
-                    for (const std::string& feature : maker.features(kVerifiedOperations[k].name, value(a.operands[0]),
-                                                                     value(a.operands[1]), value(a.operands[2])))
+                    for (const std::string& feature :
+                         maker.features(k, value(a.operands[0]), value(a.operands[1]), value(a.operands[2])))
                         seen.insert(feature);
             for (const char* feature : {"flushed +", "flushed -", "largest +", "largest -", "smallest", "zero -",
                                         "just above a tie +", "just below a tie -", kOtherWay})

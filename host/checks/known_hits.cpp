@@ -1,4 +1,4 @@
-#include "host/verify/known_hits.hpp"
+#include "host/checks/known_hits.hpp"
 
 namespace raya {
 namespace {

@@ -12,8 +12,8 @@
 __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]
                           __global const raya_pixel* restrict pixels,      // [case]
                           const uint cases,
-                          __global uint* restrict results)                 // [case][6]: owner, size of its share, number in it,
-                                                                           // the pixel of that number (row, column),
+                          __global uint* restrict results)                 // [case][6]: owner, size of its share,
+                                                                           // number in it, its pixel (row, column),
                                                                            // neighbours (a bit for each side)
 {
     const uint i = get_global_id(0);

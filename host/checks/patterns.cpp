@@ -1,4 +1,4 @@
-#include "host/verify/patterns.hpp"
+#include "host/checks/patterns.hpp"
 
 #include <algorithm>
 

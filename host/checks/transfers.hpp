@@ -1,0 +1,34 @@
+// Words on their way: bus, ring and links, and the copies that they are made of, each against a model on the host.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "host/checks/verdict.hpp"
+#include "host/cl/commands.hpp"
+#include "kernels/shared/torus.h"
+
+namespace raya {
+
+/// Words that are broadcast, and others that are gathered.
+Verdict check_bus(Session& session);
+
+/// 12 rotations, in both directions, of P blocks of so many words.
+Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
+
+/// Some nodes' outboxes filled, one exchange, all inboxes compared. `every`: a box in so many has packets.
+Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every);
+
+/// `count` words of each of `blocks` blocks, from one pitch to another.
+struct BlockCopy {
+    Session::Blocks from, to;
+    std::size_t count, blocks;
+};
+
+/// Words below this number are copied to words below it.
+inline constexpr std::size_t kCopiedWords = 4096;
+
+/// Copies within kCopiedWords; all other words stay as they were.
+Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
+
+}  // namespace raya

@@ -1,0 +1,45 @@
+// Every operation of the number layer on rows of operands.
+//
+// A work-group is one work-item, which takes the next V rows; their number is a multiple of V. Everything lies column
+// by column: operand k of row i at k * rows + i, the bits of result k of row i likewise. Every operation is done on
+// every row; the host looks at those that the row is for (host/checks/numbers.hpp).
+#include "kernels/checks/rows.clh"
+#include "kernels/number/power.clh"
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; from_index takes a's bits
+                const uint rows,
+                __global uint* restrict results)          // [12][rows], in the order below
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const real a = load_lanes(operands + first, 1), b = load_lanes(operands + rows + first, 1);
+    const real c = load_lanes(operands + 2 * rows + first, 1);
+    __global uint* to = results + first;
+    store_bits(to, 1, num_add(a, b));
+    store_bits(to + rows, 1, num_sub(a, b));
+    store_bits(to + 2 * rows, 1, num_mul(a, b));
+    store_bits(to + 3 * rows, 1, num_div(a, b));
+    store_bits(to + 4 * rows, 1, num_sqrt(a));
+    store_bits(to + 5 * rows, 1, num_mad(a, b, c));
+    store_bits(to + 6 * rows, 1, num_add(num_mul(a, b), c));  // two roundings: not to be contracted to num_mad
+    store_bits(to + 7 * rows, 1, num_max(a, b));
+    store_bits(to + 8 * rows, 1, num_floor(a));
+    store_bits(to + 9 * rows, 1, num_round(a));
+    store_bits(to + 10 * rows, 1, num_from_index(as_lanes_uint(a)));
+    store_bits(to + 11 * rows, 1, num_power(a, b));
+}
+
+// What has no known answers: a kernel of its own, as its compilation takes time.
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void functions(__global const float* restrict operands,  // as above
+               const uint rows,
+               __global uint* restrict results)          // [4][rows], in the order below
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const real a = load_lanes(operands + first, 1);
+    __global uint* to = results + first;
+    store_bits(to, 1, num_neg(a));
+    store_bits(to + rows, 1, num_abs(a));
+    store_bits(to + 2 * rows, 1, num_log2(a));
+    store_bits(to + 3 * rows, 1, num_exp2(load_lanes(operands + 2 * rows + first, 1)));  // of c
+}

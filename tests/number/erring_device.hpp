@@ -1,0 +1,29 @@
+// A device whose division errs by up to 2 units in the last place and whose square root by up to 3, as patches of the
+// layer.
+#pragma once
+#include "tests/number/number_runs.hpp"
+
+namespace raya {
+
+/// For builds that do not trust the device: what they refine errs, by the operands' bits, where it is certainly normal.
+inline std::vector<SourcePatch> erring_device() {
+    const std::string file = "number/divide.clh", before = "// The neighbour of z whose bits are";
+    const std::string functions = R"(
+static inline real err_by(real z, mask bits, int reach) {
+    const count mixed = as_lanes_uint(bits) * 2654435761u;
+    const mask step = as_lanes_int((mixed >> 16) % (count)(2 * reach + 1)) - reach;
+    const mask normal = (fabs(z) > 0x1p-126f) & (fabs(z) < INFINITY);
+    return choose(normal, as_lanes_real(as_lanes_int(z) + step), z);
+}
+)";
+    return {{file, before, functions + before},
+            {file, "real z = a / b;", "real z = err_by(a / b, as_lanes_int(a) ^ (as_lanes_int(b) >> 1), 2);"},
+            {file, "real z = sqrt(x);", "real z = err_by(sqrt(x), as_lanes_int(x), 3);"}};
+}
+
+/// The format on a device that errs.
+inline NumberBuild refined_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {
+    return {.format = format, .lanes = lanes, .trusted = false, .sources = {.patches = erring_device()}};
+}
+
+}  // namespace raya

@@ -1,0 +1,70 @@
+// Truth by lanes: choices, counts and masks.
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "host/scene/split_mix.hpp"
+#include "tests/kernels/kernel_runner.hpp"
+
+namespace raya {
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+/// Any sign and fraction, and an exponent from -40 to 40, so that no result leaves the normal range.
+float random_float(SplitMix& random) {
+    const std::uint64_t word = random.next();
+    const auto exponent = static_cast<std::uint32_t>(127 - 40 + (word >> 32) % 81);
+    return std::bit_cast<float>((static_cast<std::uint32_t>(word) & 0x807fffffu) | exponent << 23);
+}
+
+}  // namespace
+
+TEST_CASE("truth by lanes chooses, counts and is seen whichever lane has it", "[number]") {
+    constexpr std::uint64_t kSeed = 62;
+    constexpr std::size_t kColumns = 9;
+    // Rows of 16: no lane true, all, each lane alone, each alone false, and random ones. True: a < b.
+    SplitMix random(kSeed);
+    std::vector<bool> truth(16, false);
+    truth.insert(truth.end(), 16, true);
+    for (std::size_t i = 0; i < 256; ++i) truth.push_back(i / 16 == i % 16);
+    for (std::size_t i = 0; i < 256; ++i) truth.push_back(i / 16 != i % 16);
+    for (std::size_t i = 0; i < 512; ++i) truth.push_back(random.next() >> 63);
+    std::vector<float> operands;
+    for (const bool is_true : truth) {
+        operands.push_back(random_float(random));
+        const float above = std::nextafter(operands.back(), HUGE_VALF);
+        operands.push_back(is_true ? above : operands.back());  // equal is not less
+    }
+    for (const Variant& variant : variants()) {
+        KernelRunner runner("tests/number/masks.cl", variant);
+        const auto from = runner.filled("operands", operands);
+        auto to = runner.poisoned("results", truth.size() * kColumns);
+        runner.run_rows<const Buffer<float>&, Buffer<std::uint32_t>&>("masks", truth.size(), from, to);
+        const Words results = runner.read(to);
+        for (std::uint32_t i = 0; i < truth.size(); ++i) {
+            const auto group = truth.begin() + i / variant.lanes * variant.lanes;
+            const auto any = [&](bool value) {
+                return std::find(group, group + variant.lanes, value) != group + variant.lanes;
+            };
+            const Words expected = {
+                std::bit_cast<std::uint32_t>(operands[2 * i]),  // a, which is b too where m is false
+                truth[i] ? i : 12345u,
+                i + truth[i],
+                truth[i] ? i + 5 : i,
+                any(true),
+                any(false),
+                truth[i],
+                2,
+                std::bit_cast<std::uint32_t>(static_cast<float>(i))};
+            const Words row(results.begin() + i * kColumns, results.begin() + (i + 1) * kColumns);
+            CAPTURE(variant.name(), kSeed, i);
+            CHECK(row == expected);
+        }
+    }
+}
+
+}  // namespace raya
