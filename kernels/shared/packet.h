@@ -1,4 +1,5 @@
-// What travels between nodes: ray packets and return packets, 16 and 8 words (Yoshitani & Yamazaki, Table 1 and protocol).
+// What travels between nodes: ray packets and return packets, 16 and 8 words (Yoshitani & Yamazaki, Table 1 and
+// protocol).
 //
 //   the paper's field            here
 //   voxel, next voxel            voxel: the one that the packet goes to; what it was in before is not needed
@@ -38,7 +39,7 @@ typedef struct {
     raya_head head;
     float origin[3];
     float direction[3];  // of length 1
-    float limit;         // hits count below: a shadow ray's distance to its light; a wide ray's to its nearest hit so far
+    float limit;         // hits count below: a shadow ray's distance to its light, a wide ray's to its nearest hit
     raya_u32 start;      // of a wide ray: the voxel that it visited first
 } raya_packet;
 RAYA_SHARED_SIZE(raya_packet, 4 * 16);
