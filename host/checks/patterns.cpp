@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/machine/image_size.hpp"
 #include "host/scene/split_mix.hpp"
 
 namespace raya {

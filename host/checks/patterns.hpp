@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "host/ring/mapping.hpp"
 #include "host/torus/topology.hpp"
+#include "kernels/shared/mapping.h"
 #include "kernels/shared/neighbours.h"
 
 namespace raya {

@@ -1,7 +1,6 @@
 // raya bench: rays per second by kernel, lanes and format on this device, each row checked before it is timed.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/embedded.hpp"
@@ -29,7 +29,7 @@ struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
     std::vector<std::string> ways;
-    int samples = 7;
+    std::uint32_t samples = 7;
     std::string report, baseline;
     double tolerance = 10;  // percent
 };
@@ -170,36 +170,32 @@ void add_bench_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("bench", "Measure rays per second by kernel, lanes and format on this device");
     const auto options = std::make_shared<BenchCommand>();
-    command->add_option("SCENE", options->render.scene, "Scene in NFF; default: 30 spheres and a plane, 512 x 512")
+    add_value(*command, "SCENE", options->render.scene, "Scene in NFF; default: 30 spheres and a plane, 512 x 512")
         ->type_name("SCENE.nff");
     add_render_options(*command, options->render);
-    command
-        ->add_option("--ways", options->ways,
-                     "Time whole renders in place of the trace kernel, in these ways, with commas between them: none, "
-                     "grid: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
-                     "is what the others are held against")
+    add_value(*command, "--ways", options->ways,
+              "Time whole renders in place of the trace kernel, in these ways, with commas between them: none, "
+              "grid: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
+              "is what the others are held against")
         ->delimiter(',')
         ->type_name("none,grid,torus");
-    command
-        ->add_option("--samples", options->samples, "Samples of each row, 1..1000; the best and the median are printed")
+    add_value(*command, "--samples", options->samples,
+              "Samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")
         ->capture_default_str();
-    command->add_option("--report", options->report, "Write the rows, for a later --compare")->type_name("FILE.json");
-    command
-        ->add_option("--compare", options->baseline,
-                     "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
-                     "image another one")
+    add_value(*command, "--report", options->report, "Write the rows, for a later --compare")->type_name("FILE.json");
+    add_value(*command, "--compare", options->baseline,
+              "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
+              "image another one")
         ->type_name("FILE.json");
-    command
-        ->add_option("--tolerance", options->tolerance,
-                     "With --compare: percent of its rate, 0..100, that a row may lose; it is slower where its best "
-                     "and its median have both lost more")
+    add_value(*command, "--tolerance", options->tolerance,
+              "With --compare: percent of its rate, 0..100, that a row may lose; it is slower where its best "
+              "and its median have both lost more")
         ->type_name("PERCENT")
         ->capture_default_str();
     command->get_option("--format")
         ->description(
             "Formats to compare, with commas between them: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");
-    refuse_odd_values(*command);
     command->callback([options] { bench(*options); });
 }
 

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/report/whole_file.hpp"
 #include "host/scene/nff_writer.hpp"
@@ -16,14 +16,15 @@ namespace {
 
 struct GenerateOptions {
     std::string output;
-    int level = 4, size = 12, count = 0;
+    int level = 4, count = 0;
+    std::uint32_t size = 12;
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
 };
 
 CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help) {
     CLI::App* kind = command.add_subcommand(name, help);
-    kind->add_option("-o,--output", options.output, "NFF file to write")->required()->type_name("SCENE.nff");
+    add_value(*kind, "-o,--output", options.output, "NFF file to write")->required()->type_name("SCENE.nff");
     return kind;
 }
 
@@ -36,24 +37,24 @@ void add_generate_command(CLI::App& program) {
 
     CLI::App* balls =
         add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square");
-    balls->add_option("--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")
+    add_value(*balls, "--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")
         ->type_name("LEVEL")
         ->capture_default_str();
     balls->callback([options] { write_whole_file(options->output, write_nff(generate_balls(options->level))); });
 
     CLI::App* lattice =
         add_kind(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube");
-    lattice
-        ->add_option("--size", options->size,
-                     "Cylinders N along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
+    add_value(*lattice, "--size", options->size,
+              "Cylinders N along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
         ->type_name("N")
         ->capture_default_str();
-    lattice->callback([options] { write_whole_file(options->output, write_nff(generate_lattice(options->size))); });
+    lattice->callback(
+        [options] { write_whole_file(options->output, write_nff(generate_lattice(static_cast<int>(options->size)))); });
 
     CLI::App* uniform =
         add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube");
-    uniform->add_option("N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
-    uniform->add_option("--voxels", options->voxels, "Voxels along x, y and z, 1..256 each")
+    add_value(*uniform, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
+    add_value(*uniform, "--voxels", options->voxels, "Voxels along x, y and z, 1..256 each")
         ->type_name("XxYxZ")
         ->required();
     uniform->callback([options] {
@@ -66,8 +67,8 @@ void add_generate_command(CLI::App& program) {
 
     CLI::App* random =
         add_kind(*command, *options, "random", "N spheres anywhere in a cube, the same for the same seed");
-    random->add_option("N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
-    random->add_option("--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
+    add_value(*random, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
+    add_value(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
         ->capture_default_str();
     random->callback(
@@ -76,7 +77,6 @@ void add_generate_command(CLI::App& program) {
     CLI::App* centre =
         add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
     centre->callback([options] { write_whole_file(options->output, write_nff(generate_centre())); });
-    for (CLI::App* kind : {balls, lattice, uniform, random, centre}) refuse_odd_values(*kind);
 }
 
 }  // namespace raya

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/ring/mapping.hpp"
 
 namespace raya {
 
@@ -26,12 +25,11 @@ std::vector<std::uint32_t> parse_sizes(const std::string& text) {
     }
 }
 
-std::vector<std::uint32_t> parse_image_size(const std::string& text) {
-    std::vector<std::uint32_t> sides = parse_sizes(text);
-    if (sides.size() == 1) sides.push_back(sides[0]);
-    if (sides.size() != 2)
+ImageSize parse_image_size(const std::string& text) {
+    const std::vector<std::uint32_t> sides = parse_sizes(text);
+    if (sides.empty() || sides.size() > 2)
         throw UserError(fmt::format("--size {}: must be N or WxH, 1..{} pixels a side", text, kLargestSide));
-    return sides;
+    return {sides.front(), sides.back()};
 }
 
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
@@ -52,25 +50,36 @@ Accel parse_accel(const std::string& text) {
     return {.grid = true, .divisions = Divisions{sides[0], sides[1], sides[2]}};
 }
 
-void add_device_option(CLI::App& command, std::string& device) {
-    command
-        .add_option("--device", device,
-                    "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
-                    "GPU, else the first CPU")
-        ->type_name("NAME");
+AntialiasMethod parse_antialias(const std::string& text) {
+    for (const AntialiasMethod method :
+         {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
+        if (text == antialias_name(method)) return method;
+    throw UserError(fmt::format("--antialias {}: must be none, filter or supersample", text));
 }
 
-void refuse_odd_values(CLI::App& command) {
-    for (CLI::Option* option : command.get_options()) {
-        const std::string type = option->get_type_name();
-        if (option->get_type_size() == 0) continue;  // a flag
-        const bool whole = type == "N" || type == "P" || type == "p" || type == "V" || type == "L" || type == "BYTES";
-        option->check([whole](const std::string& value) -> std::string {
-            if (value.empty()) return "must not be empty";
-            const bool digits = value.find_first_not_of("0123456789") == std::string::npos;
-            return whole && !digits ? "'" + value + "' is not a whole number" : "";
-        });
-    }
+raya_u32 parse_points(const std::string& text) {
+    for (const raya_u32 points : {RAYA_POINTS_AXES, RAYA_POINTS_DIAGONALS})
+        if (text == points_name(points)) return points;
+    throw UserError(fmt::format("--points {}: must be axes or diagonals", text));
+}
+
+Sampling parse_sampling(const std::string& text) {
+    if (text == "centres") return Sampling::kCentres;
+    if (text == "corners") return Sampling::kCorners;
+    throw UserError(fmt::format("--sampling {}: must be centres or corners", text));
+}
+
+Links parse_links(const std::string& text) {
+    for (const Links links : {Links::kTorus3d, Links::kTorus2d})
+        if (text == links_name(links)) return links;
+    throw UserError(fmt::format("--links {}: must be torus3d, six links a node, or torus2d, four", text));
+}
+
+void add_device_option(CLI::App& command, std::string& device) {
+    add_value(command, "--device", device,
+              "OpenCL device: number or part of a name, see raya devices; default: RAYA_DEVICE, else the first "
+              "GPU, else the first CPU")
+        ->type_name("NAME");
 }
 
 }  // namespace raya

@@ -6,6 +6,10 @@
 #include <vector>
 
 #include "host/grid/accel.hpp"
+#include "host/machine/image_size.hpp"
+#include "host/ring/antialias.hpp"
+#include "host/scene/packer.hpp"
+#include "host/torus/topology.hpp"
 
 namespace CLI {
 class App;
@@ -18,7 +22,7 @@ std::vector<std::uint32_t> parse_sizes(const std::string& text);
 
 /// An image size: "512" (square) or "512x256". UserError names the option and its legal values; the range is checked
 /// later.
-std::vector<std::uint32_t> parse_image_size(const std::string& text);
+ImageSize parse_image_size(const std::string& text);
 
 /// Three numbers, along x, y and z: "4x4x4". UserError names the option and its legal values, "1..256 each".
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
@@ -27,11 +31,18 @@ std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const 
 /// --accel: "none", "grid" or "grid:AxBxC". UserError as above.
 Accel parse_accel(const std::string& text);
 
+// One word each; UserError names the option and the legal ones.
+
+/// --antialias: "none", "filter", "supersample".
+AntialiasMethod parse_antialias(const std::string& text);
+/// --points: "axes", "diagonals".
+raya_u32 parse_points(const std::string& text);
+/// --sampling: "centres", "corners".
+Sampling parse_sampling(const std::string& text);
+/// --links: "torus3d", "torus2d".
+Links parse_links(const std::string& text);
+
 /// Adds --device: which one, see choose_device().
 void add_device_option(CLI::App& command, std::string& device);
-
-/// Makes every option of `command` refuse an empty value, and those that take whole numbers anything but digits: the
-/// parser would take the first as not given and wrap negative numbers round.
-void refuse_odd_values(CLI::App& command);
 
 }  // namespace raya

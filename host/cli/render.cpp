@@ -1,8 +1,8 @@
 // raya render: a scene file in, an image and a load report out.
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_command.hpp"
 
@@ -14,7 +14,7 @@ void render(const CLI::App& parsed, const RenderCommand& command) {
     refuse_options_of_other_machines(parsed, machine);
     check_trace(parsed, command.trace);
     check_targets(command);
-    machine.divides_scene() ? render_on_torus(command) : render_on_ring(command);
+    machine.kind == MachineKind::kTorus ? render_on_torus(command) : render_on_ring(command);
 }
 
 }  // namespace
@@ -22,26 +22,25 @@ void render(const CLI::App& parsed, const RenderCommand& command) {
 void add_render_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
     const auto options = std::make_shared<RenderCommand>();
-    command->add_option("SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
+    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
         ->required()
         ->type_name("SCENE.nff");
-    command->add_option("-o,--output", options->image, "Image to write: .png (sRGB), .exr or .pfm (linear)")
+    add_value(*command, "-o,--output", options->image, "Image to write: .png (sRGB), .exr or .pfm (linear)")
         ->required()
         ->type_name("IMAGE");
     add_render_options(*command, options->render);
     add_torus_options(*command, options->torus);
-    command->add_option("--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")
+    add_value(*command, "--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")
         ->type_name("FILE.exr");
-    command->add_option("--mask", options->mask, "Write which pixels were supersampled, white on black")
+    add_value(*command, "--mask", options->mask, "Write which pixels were supersampled, white on black")
         ->type_name("IMAGE");
-    command->add_option("--report", options->report, "Write everything that was counted and measured")
+    add_value(*command, "--report", options->report, "Write everything that was counted and measured")
         ->type_name("FILE.json");
     command->add_flag("--profile", options->profile,
                       "Print launches and times of every labelled command, the builds, and how near each kernel came "
                       "to the device's measured peak (the roofline)");
     add_trace_options(*command, options->trace);
     command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
-    refuse_odd_values(*command);
     command->callback([command, options] { render(*command, *options); });
 }
 

@@ -2,95 +2,80 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/parse_mapping.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 
 namespace raya {
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
-    command
-        .add_option(
-            "--machine", o.machine,
-            "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
-            "cap (256 PEs), pixel-machine (64), links (256): those machines' arrays, on PEs of spa")
+    add_value(command, "--machine", o.machine,
+              "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
+              "cap (256 PEs), pixel-machine (64), links (256): those machines' arrays, on PEs of spa")
         ->type_name("NAME")
         ->capture_default_str();
-    command.add_option("--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
+    add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
         ->type_name("N|WxH");
-    command.add_option("--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's, or A*B of a grid")
+    add_value(command, "--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's, or A*B of a grid")
         ->type_name("P");
-    command
-        .add_option("--offset", o.offset,
-                    "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W), 0 on machines with a "
-                    "mapping of their own")
+    add_value(command, "--offset", o.offset,
+              "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W), 0 on machines with a "
+              "mapping of their own")
         ->type_name("p");
-    command
-        .add_option(
-            "--mapping", o.mapping,
-            "Which PE owns which pixel: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
-            "split, offset 0), rows (scan lines in turn), blocks (contiguous scan lines), grid:AxB (A rows of B "
-            "PEs: every A-th line, every B-th pixel of it), tiles:WxH (tiles of W x H pixels in turn), "
-            "random:seed (random: seed 1); dynamic:CHUNK[,OVERHEAD] and hybrid:CHUNK[,OVERHEAD[,SHARE]]: pixels handed "
-            "out while the machine runs, all or those after the first SHARE (0.5) of each PE, loads simulated; "
-            "default: the machine's, cyclic on spa")
+    add_value(
+        command, "--mapping", o.mapping,
+        "Which PE owns which pixel: cyclic (slots of a sheared image, --offset), cyclic:p, column (the column "
+        "split, offset 0), rows (scan lines in turn), blocks (contiguous scan lines), grid:AxB (A rows of B "
+        "PEs: every A-th line, every B-th pixel of it), tiles:WxH (tiles of W x H pixels in turn), "
+        "random:seed (random: seed 1); dynamic:CHUNK[,OVERHEAD] and hybrid:CHUNK[,OVERHEAD[,SHARE]]: pixels handed "
+        "out while the machine runs, all or those after the first SHARE (0.5) of each PE, loads simulated; "
+        "default: the machine's, cyclic on spa")
         ->type_name("NAME");
-    command.add_option("--fold", o.fold, "Slots to PEs where P is not W: cyclic (c mod P) or block (c P div W)")
+    add_value(command, "--fold", o.fold, "Slots to PEs where P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
         ->default_str("cyclic");
-    command
-        .add_option("--format", o.format,
-                    "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
-                    "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the others")
+    add_value(command, "--format", o.format,
+              "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
+              "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the others")
         ->type_name("NAME");
-    command.add_option("--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
+    add_value(command, "--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
         ->type_name("N");
-    command
-        .add_option("--sampling", o.sampling,
-                    "Primary rays through pixel centres, or through pixel corners as SPD counts them")
+    add_value(command, "--sampling", o.sampling,
+              "Primary rays through pixel centres, or through pixel corners as SPD counts them")
         ->type_name("centres|corners")
         ->capture_default_str();
-    command
-        .add_option("--antialias", o.antialias,
-                    "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
-                    "differ from a neighbour; neighbours come by rotating the ring")
+    add_value(command, "--antialias", o.antialias,
+              "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
+              "differ from a neighbour; neighbours come by rotating the ring")
         ->type_name("none|filter|supersample")
         ->capture_default_str();
-    command
-        .add_option("--threshold", o.threshold,
-                    "Supersample where a colour, clamped to 0..1, differs by this much or more, 0..1; default: 0.125")
+    add_value(command, "--threshold", o.threshold,
+              "Supersample where a colour, clamped to 0..1, differs by this much or more, 0..1; default: 0.125")
         ->type_name("T");
-    command
-        .add_option("--points", o.points,
-                    "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
+    add_value(command, "--points", o.points,
+              "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
         ->type_name("axes|diagonals")
         ->default_str("axes");
-    command
-        .add_option(
-            "--accel", o.accel,
-            "grid: rays walk through voxels inside each PE's memory and meet the objects listed there, the same hits "
-            "sooner; A x B x C voxels along x, y, z, by default some for each object; none: every ray is tested "
-            "against all objects")
+    add_value(command, "--accel", o.accel,
+              "grid: rays walk through voxels inside each PE's memory and meet the objects listed there, the same hits "
+              "sooner; A x B x C voxels along x, y, z, by default some for each object; none: every ray is tested "
+              "against all objects")
         ->type_name("none|grid[:AxBxC]")
         ->capture_default_str();
-    command
-        .add_option(
-            "--pe-memory", o.pe_memory,
-            "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "
-            "4194304 on torus, no limit on grande")
+    add_value(command, "--pe-memory", o.pe_memory,
+              "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "
+              "4194304 on torus, no limit on grande")
         ->type_name("BYTES");
     add_device_option(command, o.device);
-    command
-        .add_option("--lanes", o.lanes,
-                    "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: the device's float vectors")
+    add_value(command, "--lanes", o.lanes,
+              "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: the device's float vectors")
         ->type_name("V");
-    command
-        .add_option("--group", o.group,
-                    "Work-items L in the work-group that stands for a PE, 1..64; default: 1 on a CPU, 32 elsewhere")
+    add_value(command, "--group", o.group,
+              "Work-items L in the work-group that stands for a PE, 1..64; default: 1 on a CPU, 32 elsewhere")
         ->type_name("L");
-    command.add_option("--kernel-dir", o.kernel_dir, "Read the kernels from this folder, while developing them")
+    add_value(command, "--kernel-dir", o.kernel_dir, "Read the kernels from this folder, while developing them")
         ->type_name("DIR");
 }
 
@@ -110,44 +95,61 @@ Antialias antialias_settings(const RenderOptions& o) {
 
 // --offset and --fold say how slots lie: beside a mapping that says otherwise, or has no slots, one of the two is a
 // mistake.
-void check_slot_options(const RenderOptions& o, const MappingText& mapping) {
-    if (!mapping.has_slots() && o.offset)
+void check_slot_options(const RenderOptions& o, const MappingText& mapping, const ImageSize& image) {
+    const bool has_slots = mapping.rule.has_slots();
+    if (!has_slots && o.offset)
         throw UserError(
             fmt::format("--offset {} with --mapping {}: {} has no offset; leave --offset out, or choose cyclic",
-                        *o.offset, mapping.text, mapping.name));
-    if (!mapping.has_slots() && !o.fold.empty())
+                        *o.offset, mapping.text, mapping.name()));
+    if (!has_slots && !o.fold.empty())
         throw UserError(fmt::format(
             "--fold {} with --mapping {}: {} has no slots to fold; leave --fold out, or choose cyclic or column",
-            o.fold, mapping.text, mapping.name));
-    if (o.offset && mapping.parameter.value_or(*o.offset) != *o.offset)
+            o.fold, mapping.text, mapping.name()));
+    if (o.offset && !mapping.leaves_offset && *o.offset != mapping.rule.parameter)
         throw UserError(fmt::format("--offset {} with --mapping {}: the mapping's offset is {}; leave one of them out",
-                                    *o.offset, mapping.text, *mapping.parameter));
+                                    *o.offset, mapping.text, mapping.rule.parameter));
+    if (o.offset && *o.offset >= image.width)
+        throw UserError(
+            fmt::format("--offset {}: must be 0..{}, less than the image's width", *o.offset, image.width - 1));
 }
 
-// Fills mapping and, where the distribution is a dynamic one, its plan. The pixels that a hybrid starts with, and those
-// that the device traces in place of a dynamic machine, are the cyclic mapping's.
-void set_mapping(RingSettings& settings, const RenderOptions& o, std::uint32_t width, std::uint32_t height) {
+// The machine's own mapping, where none is asked for. The pixels that a hybrid starts with, and those that the device
+// traces in place of a dynamic machine, are the cyclic mapping's.
+MappingText mapping_asked_for(const RenderOptions& o, const Machine& machine) {
+    if (!o.mapping.empty()) return parse_mapping(is_dynamic(o.mapping) ? "cyclic" : o.mapping);
+    if (machine.mapping.has_slots()) return parse_mapping("cyclic");
+    return {mapping_text(machine.mapping), machine.mapping, false};
+}
+
+// "cyclic" alone has --offset, else the machine's as far as it goes into the image.
+MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Machine& machine, std::uint32_t width) {
+    if (!mapping.rule.has_slots()) return mapping.rule;
+    const std::uint32_t usual = machine.mapping.has_slots() ? machine.mapping.parameter % width : 0;
+    const std::uint32_t offset = mapping.leaves_offset ? o.offset.value_or(usual) : mapping.rule.parameter;
+    return cyclic_mapping(offset, o.fold.empty() ? Fold::kCyclic : parse_fold(o.fold));
+}
+
+// Fills mapping and, where the distribution is a dynamic one, its plan.
+void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize& image) {
     const Machine& machine = settings.machine;
-    std::string text = o.mapping.empty() ? machine.mapping : o.mapping;
-    if (text.starts_with("dynamic") || text.starts_with("hybrid")) {
-        settings.dynamic = parse_dynamic(text);
-        text = "cyclic";
-    }
-    const MappingText mapping = parse_mapping(text);
-    check_slot_options(o, mapping);
-    const std::uint32_t pes = o.pes.value_or(mapping.pes().value_or(machine.pes.value_or(width)));
-    const std::uint32_t offset = o.offset.value_or(machine.offset % width);
-    settings.mapping = make_mapping(text, width, height, pes, offset, o.fold.empty() ? "cyclic" : o.fold);
+    if (o.mapping.empty())
+        settings.dynamic = machine.dynamic;
+    else if (is_dynamic(o.mapping))
+        settings.dynamic = parse_dynamic(o.mapping);
+    const MappingText mapping = mapping_asked_for(o, machine);
+    check_slot_options(o, mapping, image);
+    const std::uint32_t pes = o.pes.value_or(mapping.rule.pes().value_or(machine.pes.value_or(image.width)));
+    settings.mapping = make_mapping(rule_of(mapping, o, machine, image.width), image, pes);
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> image_size(const RenderOptions& o, const Scene& scene) {
-    std::vector<std::uint32_t> size = {static_cast<std::uint32_t>(scene.view.width),
-                                       static_cast<std::uint32_t>(scene.view.height)};
+ImageSize image_size(const RenderOptions& o, const Scene& scene) {
+    ImageSize size = {static_cast<std::uint32_t>(scene.view.width), static_cast<std::uint32_t>(scene.view.height)};
     if (!o.size.empty()) size = parse_image_size(o.size);
-    if (size[0] > kLargestSide || size[1] > kLargestSide)
-        throw UserError(fmt::format("--size {}x{}: both sides must be 1..{} pixels", size[0], size[1], kLargestSide));
+    if (size.width > kLargestSide || size.height > kLargestSide)
+        throw UserError(
+            fmt::format("--size {}x{}: both sides must be 1..{} pixels", size.width, size.height, kLargestSide));
     return size;
 }
 
@@ -158,12 +160,6 @@ std::optional<std::uint64_t> pe_memory_of(const RenderOptions& o, const Machine&
 
 NumberFormat format_of(const RenderOptions& o, const Machine& machine) {
     return o.format.empty() ? machine.format : parse_format(o.format);
-}
-
-Sampling sampling_of(const RenderOptions& o) {
-    if (o.sampling != "centres" && o.sampling != "corners")
-        throw UserError(fmt::format("--sampling {}: must be centres or corners", o.sampling));
-    return o.sampling == "corners" ? Sampling::kCorners : Sampling::kCentres;
 }
 
 KernelChoice kernel_choice(const RenderOptions& o) {
@@ -178,15 +174,14 @@ KernelChoice kernel_choice(const RenderOptions& o) {
 RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     RingSettings settings;
     settings.machine = machine_named(o.machine);
-    if (settings.machine.divides_scene())
+    if (settings.machine.kind == MachineKind::kTorus)
         throw UserError(
             fmt::format("--machine {}: its nodes hold voxels of the scene, not pixels; only raya render takes it, "
                         "choose a ring: spa",
                         o.machine));
     settings.format = format_of(o, settings.machine);
-    settings.sampling = sampling_of(o);
-    const std::vector<std::uint32_t> size = image_size(o, scene);
-    set_mapping(settings, o, size[0], size[1]);
+    settings.sampling = parse_sampling(o.sampling);
+    set_mapping(settings, o, image_size(o, scene));
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.antialias = antialias_settings(o);
     settings.accel = parse_accel(o.accel);

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "host/cl/device.hpp"
+#include "host/machine/image_size.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/scene.hpp"
 
@@ -27,12 +27,11 @@ struct RenderOptions {
 /// Adds the options with their help texts: unit, default, legal range.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-// What --size, --format, --sampling, --lanes and --group say, for any machine. UserError names the option.
+// What --size, --format, --lanes and --group say, for any machine. UserError names the option.
 
 /// Width and height, each 1..16384; the scene's where --size is empty.
-std::vector<std::uint32_t> image_size(const RenderOptions& options, const Scene& scene);
+ImageSize image_size(const RenderOptions& options, const Scene& scene);
 NumberFormat format_of(const RenderOptions& options, const Machine& machine);
-Sampling sampling_of(const RenderOptions& options);
 KernelChoice kernel_choice(const RenderOptions& options);
 /// Bytes of a PE's memory: --pe-memory, else the machine's; empty: no limit.
 std::optional<std::uint64_t> pe_memory_of(const RenderOptions& options, const Machine& machine);

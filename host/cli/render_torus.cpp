@@ -36,7 +36,7 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     TorusReport t;
     t.nodes = {nodes[0], nodes[1], nodes[2]};
     t.voxels = settings.voxels;
-    t.links = settings.machine.topology;
+    t.links = links_name(settings.links);
     t.inject = settings.inject == Injection::kRoot ? "root" : "all";
     t.supersteps = result.supersteps.size();
     for (const Superstep& step : result.supersteps) t.live_max = std::max(t.live_max, step.live);
@@ -58,8 +58,8 @@ RenderReport make_report(const RenderCommand& command, const TorusSettings& sett
                          const TorusResult& result) {
     RenderReport report = begin_report(command, device, result);
     report.machine = {.name = settings.machine.name,
-                      .topology = settings.machine.topology,
-                      .mapping = settings.machine.mapping,
+                      .topology = links_name(settings.links),
+                      .mapping = "voxels",
                       .fold = {},
                       .format = format_name(settings.format),
                       .pes = raya_nodes(settings.torus),

@@ -2,9 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
 #include "host/cl/clock_anchor.hpp"
+#include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/report/session_trace.hpp"
 #include "host/report/whole_file.hpp"
@@ -18,21 +17,17 @@ constexpr std::string_view kBuild = "build ";
 }  // namespace
 
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
-    command
-        .add_option(
-            "--trace", trace.file,
-            "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
-            "machine in modelled time")
+    add_value(command, "--trace", trace.file,
+              "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
+              "machine in modelled time")
         ->type_name("FILE.json[.gz]");
-    command
-        .add_option("--trace-events", trace.events,
-                    "Events in the trace at most, 1 or more; how many were left out is said at the end")
+    add_value(command, "--trace-events", trace.events,
+              "Events in the trace at most, 1 or more; how many were left out is said at the end")
         ->type_name("N")
         ->capture_default_str();
-    command
-        .add_option("--trace-pes", trace.pes,
-                    "PEs or nodes of the modelled machine with tracks of their own: a quarter of them the busiest, a "
-                    "quarter the idlest, the others spread evenly; 0: no modelled machine")
+    add_value(command, "--trace-pes", trace.pes,
+              "PEs or nodes of the modelled machine with tracks of their own: a quarter of them the busiest, a "
+              "quarter the idlest, the others spread evenly; 0: no modelled machine")
         ->type_name("N")
         ->capture_default_str();
 }

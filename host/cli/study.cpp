@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/studies.hpp"
 #include "host/error.hpp"
@@ -29,7 +29,7 @@ struct FormatsCommand {
     std::string folder, size = "256", device;
     std::vector<std::string> scenes, formats;
     std::optional<std::uint32_t> lanes;
-    int samples = 5;
+    std::uint32_t samples = 5;
 };
 
 // Each format once, in the order given; fp32 is always there.
@@ -48,10 +48,10 @@ FormatsSettings formats_settings(const FormatsCommand& command) {
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
     if (command.lanes == 0u) throw UserError("--lanes 0: must be 1, 4, 8 or 16");
-    const std::vector<std::uint32_t> size = parse_image_size(command.size);
+    const ImageSize size = parse_image_size(command.size);
     FormatsSettings settings;
-    settings.width = size[0];
-    settings.height = size[1];
+    settings.width = size.width;
+    settings.height = size.height;
     settings.lanes = command.lanes.value_or(0);
     settings.samples = command.samples;
     settings.formats = formats_of(command);
@@ -86,14 +86,12 @@ void study_formats(const FormatsCommand& command) {
 }
 
 void add_timing_options(CLI::App& command, FormatsCommand& options) {
-    command
-        .add_option("--samples", options.samples,
-                    "Timed renders of each scene and format, 1..1000; the least time counts")
+    add_value(command, "--samples", options.samples,
+              "Timed renders of each scene and format, 1..1000; the least time counts")
         ->type_name("N")
         ->capture_default_str();
-    command
-        .add_option("--lanes", options.lanes,
-                    "Rays that a work-item traces at once: 1, 4, 8 or 16; default: the device's")
+    add_value(command, "--lanes", options.lanes,
+              "Rays that a work-item traces at once: 1, 4, 8 or 16; default: the device's")
         ->type_name("V");
     add_device_option(command, options.device);
 }
@@ -103,27 +101,23 @@ void add_formats_study(CLI::App& study) {
         "formats",
         "PSNR, errors and time of fp32 and the reduced number formats against the double-precision reference");
     const auto options = std::make_shared<FormatsCommand>();
-    command
-        ->add_option("-o,--output", options->folder,
-                     "Folder for formats.csv, formats.json and formats.md; made if missing")
+    add_value(*command, "-o,--output", options->folder,
+              "Folder for formats.csv, formats.json and formats.md; made if missing")
         ->required()
         ->type_name("DIR");
-    command
-        ->add_option("SCENE", options->scenes,
-                     "Scenes in NFF; default: the project's centre, spheres, glass, polygons, cones")
+    add_value(*command, "SCENE", options->scenes,
+              "Scenes in NFF; default: the project's centre, spheres, glass, polygons, cones")
         ->type_name("SCENE.nff");
-    command
-        ->add_option("--format", options->formats,
-                     "Formats beside fp32, with commas between: spa22 (e6m15) or eXmY[t]: X = 5..8, Y = 4..21, t "
-                     "truncates; default: e8m21, e8m18, e8m15, e7m15, e6m15, e6m14, e6m13, without and with t")
+    add_value(*command, "--format", options->formats,
+              "Formats beside fp32, with commas between: spa22 (e6m15) or eXmY[t]: X = 5..8, Y = 4..21, t "
+              "truncates; default: e8m21, e8m18, e8m15, e7m15, e6m15, e6m14, e6m13, without and with t")
         ->delimiter(',')
         ->allow_extra_args(false)  // what follows is a scene
         ->type_name("NAME,...");
-    command->add_option("--size", options->size, "Image size in pixels, 1..16384 a side")
+    add_value(*command, "--size", options->size, "Image size in pixels, 1..16384 a side")
         ->type_name("N|WxH")
         ->capture_default_str();
     add_timing_options(*command, *options);
-    refuse_odd_values(*command);
     command->callback([options] { study_formats(*options); });
 }
 

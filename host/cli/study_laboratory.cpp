@@ -2,11 +2,11 @@
 // story.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/studies.hpp"
 #include "host/error.hpp"
@@ -81,20 +81,18 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted
 void add_study(CLI::App& parent, const std::string& name, const std::string& summary, std::span<const Study> wanted) {
     CLI::App* command = parent.add_subcommand(name, summary);
     const auto options = std::make_shared<LaboratoryCommand>();
-    command->add_option("-o,--output", options->folder, "Folder for Markdown, CSV, JSON and plots; made if missing")
+    add_value(*command, "-o,--output", options->folder, "Folder for Markdown, CSV, JSON and plots; made if missing")
         ->required()
         ->type_name("DIR");
-    command
-        ->add_option("SCENE", options->scenes,
-                     wanted.size() > 1 ? "Scenes in NFF; studies of one scene take the first; default: each study's own"
-                     : wanted.front().one_scene ? "Scene in NFF; default: centre, the paper's kind"
-                                                : "Scenes in NFF; default: the study's own")
+    add_value(*command, "SCENE", options->scenes,
+              wanted.size() > 1 ? "Scenes in NFF; studies of one scene take the first; default: each study's own"
+              : wanted.front().one_scene ? "Scene in NFF; default: centre, the paper's kind"
+                                         : "Scenes in NFF; default: the study's own")
         ->type_name("SCENE.nff");
-    command
-        ->add_option("--size", options->size, "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
+    add_value(*command, "--size", options->size,
+              "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");
     add_device_option(*command, options->device);
-    refuse_odd_values(*command);
     command->callback([options, wanted] { run_studies(*options, wanted); });
 }
 

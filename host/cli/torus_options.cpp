@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 
@@ -23,7 +22,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     machine->description(machine->get_description() +
                          "; torus: nodes of 4 MB that hold voxels of the scene, see below");
     const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type) {
-        return command.add_option(name, value, text)->group(group)->type_name(type);
+        return add_value(command, name, value, text)->group(group)->type_name(type);
     };
     add("--nodes", t.nodes, "Nodes along x, y and z of the scene, at most 65,536 together", "IxJxK")
         ->default_str("4x4x4");
@@ -91,7 +90,7 @@ void refuse_options_of_other_machines(const CLI::App& command, const Machine& ma
         throw UserError(fmt::format("{} {} with --machine {}: {}", foreign.option, option->results().front(),
                                     machine.name, foreign.reason));
     };
-    if (machine.divides_scene())
+    if (machine.kind == MachineKind::kTorus)
         for (const Foreign& foreign : kOfRings) refuse(foreign);
     else
         for (const Foreign& foreign : kOfTorus) refuse(foreign);
@@ -119,13 +118,12 @@ Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
 TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, const Scene& scene) {
     TorusSettings settings;
     settings.machine = machine_named(o.machine);
-    const std::vector<std::uint32_t> size = image_size(o, scene);
-    settings.width = size[0];
-    settings.height = size[1];
+    const ImageSize size = image_size(o, scene);
+    settings.width = size.width;
+    settings.height = size.height;
     const Sides nodes = t.nodes.empty() ? kNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 together");
-    const Links links = parse_links(t.links.empty() ? settings.machine.topology : t.links);
-    settings.torus = make_torus(nodes, links);
-    settings.machine.topology = links_name(links);
+    settings.links = t.links.empty() ? Links::kTorus3d : parse_links(t.links);
+    settings.torus = make_torus(nodes, settings.links);
     settings.voxels = voxels_of(t, nodes);
     settings.inject = parse_injection(t.inject);
     if (t.queue == 0u) throw UserError("--queue 0: must be 1 packet or more");
@@ -133,7 +131,7 @@ TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, cons
     settings.memory_bytes = pe_memory_of(o, settings.machine);
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.format = format_of(o, settings.machine);
-    settings.sampling = sampling_of(o);
+    settings.sampling = parse_sampling(o.sampling);
     settings.kernels = kernel_choice(o);
     return settings;
 }

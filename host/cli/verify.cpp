@@ -4,12 +4,12 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/report/whole_file.hpp"
@@ -153,25 +153,22 @@ void add_verify_command(CLI::App& program) {
         "--full", options->full,
         "Every format, width of lanes and group size: about five minutes with PoCL on an idle CPU, longer where "
         "compilers are slow on wide vectors");
-    command->add_option("--report", options->report, "Write every check, with what is wrong, as JSON")
+    add_value(*command, "--report", options->report, "Write every check, with what is wrong, as JSON")
         ->type_name("FILE.json");
-    command->add_option("--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
+    add_value(*command, "--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
         ->type_name("DIR");
-    command
-        ->add_option("--lanes", options->lanes,
-                     "This width of lanes alone, for compilers that are slow on wide vectors; default: the device's "
-                     "own, with --full all")
+    add_value(*command, "--lanes", options->lanes,
+              "This width of lanes alone, for compilers that are slow on wide vectors; default: the device's "
+              "own, with --full all")
         ->check(CLI::IsMember({1, 4, 8, 16}))
         ->type_name("V");
-    command
-        ->add_option("--only", options->only,
-                     "Only checks with this text in \"LAYER NAME\", as printed: number, \"image glass\", spa22, ...")
+    add_value(*command, "--only", options->only,
+              "Only checks with this text in \"LAYER NAME\", as printed: number, \"image glass\", spa22, ...")
         ->type_name("TEXT");
     // For the process that runs the checks. No group: not in the help.
-    command->add_option("--lines", options->lines)->group("");
-    command->add_option("--worker-device", options->worker_device)->group("");
-    command->add_option("--worker-done", options->worker_done)->group("");
-    refuse_odd_values(*command);
+    add_value(*command, "--lines", options->lines)->group("");
+    add_value(*command, "--worker-device", options->worker_device)->group("");
+    add_value(*command, "--worker-done", options->worker_done)->group("");
     command->callback([options] { run_verify(*options); });
 }
 

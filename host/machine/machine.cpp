@@ -19,10 +19,10 @@ Machine spa() {
         .title = "the SPA",
         .topology = "ring+bus",                          // [P]
         .pes = 256,                                      // [P] DSPs
-        .offset = 16,                                    // [P] the best
         .pe_memory_bytes = 32 * 1024,                    // [P]
         .bounces = 8,                                    // [P] up to 8 reflections and refractions
         .format = {6, 15, false},                        // [P] 22 bits; [?] how they are divided
+        .mapping = cyclic_mapping(16),                   // [P] the best
         .cycle_ns = 100,                                 // [P] 20 MFLOPS
         .link_words_per_s = 6e6,                         // [P] DMA
         .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3 and 4: 32 more rotations of 768 words, 10 ms
@@ -31,8 +31,8 @@ Machine spa() {
 
 // An array and a mapping that the paper compares with its own, on PEs of the SPA without a limit to their memory, so
 // that loads can be compared. What times their own PEs and links would take is not known to us: they have none.
-Machine array_like(const std::string& name, const std::string& title, const std::string& topology, std::uint32_t pes,
-                   const std::string& mapping) {
+Machine array_like(const std::string& name, const std::string& title, const std::string& topology,
+                   const MappingRule& mapping, std::uint32_t pes) {
     Machine machine;
     machine.name = name;
     machine.title = title;
@@ -40,6 +40,14 @@ Machine array_like(const std::string& name, const std::string& title, const std:
     machine.pes = pes;
     machine.format = spa().format;
     machine.mapping = mapping;
+    return machine;
+}
+
+// [P] Each PE takes the next pixel from a root when it has finished; [?] as many PEs as the SPA has.
+Machine links() {
+    Machine machine =
+        array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
+    machine.dynamic = DynamicPlan{.chunk = 1};
     return machine;
 }
 
@@ -59,7 +67,7 @@ Machine spa1() {
     machine.name = "spa1";
     machine.title = "the SPA with one DSP";
     machine.pes = 1;
-    machine.offset = 0;  // of no effect
+    machine.mapping = cyclic_mapping(0);  // of no effect
     return machine;
 }
 
@@ -69,12 +77,12 @@ Machine torus() {
     Machine machine;
     machine.name = "torus";
     machine.title = "the torus of transputers";
+    machine.kind = MachineKind::kTorus;                   // [P]
     machine.topology = "torus3d";                         // [P] a torus; [?] six links, the T805 has four
     machine.pes = 64;                                     // [P] T805s, one voxel each: 4 x 4 x 4
     machine.pe_memory_bytes = 4 * 1024 * 1024;            // [?] of a T805 board
     machine.bounces = 8;                                  // [?] as on the SPA; the paper stops at shadows
     machine.format = {};                                  // [T] IEEE, single precision
-    machine.mapping = "voxels";                           // [P]
     machine.cycle_ns = kT805CycleNs;                      // [T] 25 MHz
     machine.link_words_per_s = kT805OneWayBytesPerS / 4;  // [T]
     return machine;
@@ -88,11 +96,11 @@ const std::vector<Machine>& machines() {
         grande(),
         spa1(),
         // [P] 256 cells; every 16th pixel in both directions [D: n = 16 where P = n x n]
-        array_like("cap", "the array of the CAP, on PEs of the SPA", "2-D array", 256, "grid:16x16"),
+        array_like("cap", "the array of the CAP, on PEs of the SPA", "2-D array", grid_mapping(16, 16), 256),
         // [P] 64 nodes; every 8th pixel of every 8th line [D]
-        array_like("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array", 64, "grid:8x8"),
-        // [P] each PE takes the next pixel from a root when it has finished; [?] as many PEs as the SPA has
-        array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", 256, "dynamic:1"),
+        array_like("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array",
+                   grid_mapping(8, 8), 64),
+        links(),
         torus(),
     };
     return all;

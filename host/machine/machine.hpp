@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "host/machine/dynamic_plan.hpp"
+#include "host/machine/mapping_rule.hpp"
 #include "host/machine/number_format.hpp"
 #include "kernels/shared/events.h"
 
@@ -14,21 +16,24 @@ namespace raya {
 /// How many events of each kind (RAYA_* of kernels/shared/events.h) were counted.
 using EventCounts = std::array<std::uint64_t, RAYA_EVENTS>;
 
+/// What a machine divides among its PEs.
+enum class MachineKind {
+    kRing,  // the pixels (host/ring/)
+    kTorus  // the scene: its PEs are nodes that hold voxels and send rays to each other (host/torus/)
+};
+
 /// An array of PEs as a description. Empty optionals follow the image or have no limit.
 struct Machine {
     std::string name;
-    std::string title;                             // for messages: "the SPA"
-    std::string topology;                          // how the PEs are joined
+    std::string title;     // for messages: "the SPA"
+    std::string topology;  // how the PEs are joined
+    MachineKind kind = MachineKind::kRing;
     std::optional<std::uint32_t> pes;              // empty: as many as the image has columns
-    std::uint32_t offset = 0;                      // p of the cyclic mapping
     std::optional<std::uint64_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
-    NumberFormat format{};           // that its PEs compute in
-    std::string mapping = "cyclic";  // pixels to PEs, as --mapping takes it; "voxels" where the scene is divided
-
-    /// Whether its PEs are nodes of a torus, which hold voxels of the scene and send rays to each other (host/torus/).
-    /// Such a machine has no mapping, and rings cannot be made of it.
-    bool divides_scene() const { return mapping == "voxels"; }
+    NumberFormat format{};               // that its PEs compute in
+    MappingRule mapping{};               // pixels to PEs, of a ring
+    std::optional<DynamicPlan> dynamic;  // where its PEs take their pixels while it runs
 
     // Rates of the time model (machine/time_model.hpp); empty where they are not known.
     std::optional<double> cycle_ns;          // of a PE, one multiply-accumulate

@@ -19,15 +19,13 @@ struct Antialias {
     raya_u32 points = RAYA_POINTS_AXES;  // RAYA_POINTS_AXES or _DIAGONALS; supersampling
 };
 
-/// "none", "filter", "supersample"; UserError names the legal values.
-AntialiasMethod parse_antialias(const std::string& text);
+/// "none", "filter", "supersample"
 std::string antialias_name(AntialiasMethod method);
 
 /// Throws UserError where the mapping leaves no neighbours to be had by turning the ring.
 void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic);
 
-/// "axes", "diagonals" as RAYA_POINTS_*; UserError names the legal values.
-raya_u32 parse_points(const std::string& text);
+/// "axes", "diagonals", of RAYA_POINTS_*
 std::string points_name(raya_u32 points);
 
 /// Cycles that a PE whose share has `share` pixels spends on the method's arithmetic between neighbours.

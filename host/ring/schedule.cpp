@@ -3,52 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <functional>
 #include <numeric>
 #include <queue>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
-#include "host/error.hpp"
-
 namespace raya {
-
 namespace {
-
-[[noreturn]] void refuse(const std::string& text) {
-    throw UserError(
-        fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD] or hybrid:CHUNK[,OVERHEAD[,SHARE]] with "
-                    "CHUNK 1..{} pixels a request, OVERHEAD 0..{} cycles a request, SHARE 0..1 of a PE's own "
-                    "pixels to start with",
-                    text, kLargestChunk, kLargestOverhead));
-}
-
-/// All of `field` as a number; from_chars does not depend on the locale.
-template <typename Number>
-bool read_number(std::string_view field, Number& number) {
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-    return error == std::errc{} && end == field.data() + field.size();
-}
-
-bool is_share(double share) { return !std::signbit(share) && share <= 1; }  // no NaN, no -0
-
-bool is_plan(const DynamicPlan& plan) {
-    return plan.chunk >= 1 && plan.chunk <= kLargestChunk && plan.overhead <= kLargestOverhead &&
-           is_share(plan.static_share);
-}
-
-std::vector<std::string_view> split_at_commas(std::string_view text) {
-    std::vector<std::string_view> fields;
-    for (std::size_t at = 0; at != std::string_view::npos;) {
-        const std::size_t comma = text.find(',', at);
-        fields.push_back(text.substr(at, comma - at));
-        at = comma == std::string_view::npos ? comma : comma + 1;
-    }
-    return fields;
-}
 
 void check_image(const CostImage& image, std::uint32_t pes) {
     const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
@@ -136,20 +98,6 @@ void hand_out(const std::vector<std::uint64_t>& chunks, std::uint64_t overhead, 
 }
 
 }  // namespace
-
-DynamicPlan parse_dynamic(const std::string& text) {
-    const std::string_view view = text;
-    const bool hybrid = view.starts_with("hybrid:");
-    if (!hybrid && !view.starts_with("dynamic:")) refuse(text);
-    const auto fields = split_at_commas(view.substr(view.find(':') + 1));
-    DynamicPlan plan;
-    if (hybrid) plan.static_share = 0.5;
-    const bool good = fields.size() <= (hybrid ? 3 : 2) && read_number(fields[0], plan.chunk) &&
-                      (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
-                      (fields.size() < 3 || read_number(fields[2], plan.static_share));
-    if (!good || !is_plan(plan)) refuse(text);
-    return plan;
-}
 
 std::string dynamic_text(const DynamicPlan& plan) {
     if (plan.static_share > 0) return fmt::format("hybrid:{},{},{}", plan.chunk, plan.overhead, plan.static_share);

@@ -10,29 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "host/machine/dynamic_plan.hpp"
 #include "host/machine/load.hpp"
 #include "host/ring/cost_image.hpp"
-#include "host/ring/mapping.hpp"
+#include "kernels/shared/mapping.h"
 
 namespace raya {
 
-inline constexpr std::uint32_t kLargestChunk = kLargestSide * kLargestSide;  // pixels: the largest image
-inline constexpr std::uint64_t kLargestOverhead = 1'000'000'000;  // cycles; times the largest image below 2^58
-
-/// How pixels are handed out while the machine runs.
-struct DynamicPlan {
-    std::uint32_t chunk = 1;     // pixels a request, 1..kLargestChunk
-    std::uint64_t overhead = 0;  // cycles that a PE spends on a request, 0..kLargestOverhead
-    double static_share = 0;     // 0..1 of each PE's own pixels that it starts with, unasked; above 0 it is a hybrid
-
-    bool operator==(const DynamicPlan&) const = default;
-};
-
-/// "dynamic:chunk[,overhead]" or "hybrid:chunk[,overhead[,share]]"; overhead 0 and share 0.5 where absent.
-/// Throws UserError with the value of --mapping and what is legal.
-DynamicPlan parse_dynamic(const std::string& text);
-
-/// The text that parse_dynamic() reads as this plan; a hybrid's with all its figures.
+/// The text that --mapping reads as this plan; a hybrid's with all its figures.
 std::string dynamic_text(const DynamicPlan& plan);
 
 /// A run that has been simulated. A PE never waits before its last pixel, so the time at which it has finished is also

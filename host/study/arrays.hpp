@@ -2,7 +2,6 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
-#include <string>
 
 #include "host/ring/mapping.hpp"
 
@@ -10,8 +9,8 @@ namespace raya {
 
 /// Kohata & Ito's cyclic mapping.
 inline raya_mapping cyclic(std::uint32_t width, std::uint32_t height, std::uint32_t pes, std::uint32_t offset,
-                           const char* fold = "cyclic") {
-    return make_mapping("cyclic", width, height, pes, offset, fold);
+                           Fold fold = Fold::kCyclic) {
+    return make_mapping(cyclic_mapping(offset, fold), {width, height}, pes);
 }
 
 /// The same with a PE for each column of a square image.
@@ -25,13 +24,12 @@ inline raya_mapping squarest_grid(std::uint32_t width, std::uint32_t height, std
     std::uint32_t rows = 1;
     for (std::uint32_t a = 1; a <= pes / a; ++a)
         if (pes % a == 0) rows = a;
-    return make_mapping("grid:" + std::to_string(rows) + "x" + std::to_string(pes / rows), width, height, pes, 0,
-                        "cyclic");
+    return make_mapping(grid_mapping(rows, pes / rows), {width, height}, pes);
 }
 
 /// Each pixel's PE drawn, shares even; seed 1.
 inline raya_mapping random_pixels(std::uint32_t width, std::uint32_t height, std::uint32_t pes) {
-    return make_mapping("random:1", width, height, pes, 0, "cyclic");
+    return make_mapping(random_mapping(1), {width, height}, pes);
 }
 
 }  // namespace raya

@@ -34,7 +34,7 @@ CostImage slots_of(const CostImage& image, std::uint32_t offset) {
     return {image.width, 1, static_load(image, cyclic(image.width, image.height, image.width, offset)).per_pe};
 }
 
-double speedup_of(const CostImage& slots, std::uint32_t pes, const char* fold) {
+double speedup_of(const CostImage& slots, std::uint32_t pes, Fold fold) {
     return static_load(slots, cyclic(slots.width, 1, pes, 0, fold)).speedup;
 }
 
@@ -46,9 +46,9 @@ Rows rows_of(const CostImage& image) {
     for (std::uint32_t pes = 1; pes <= w; ++pes) {
         const std::uint32_t a = root_offset(pes);
         if (pes == 1 || a != root_offset(pes - 1)) root = slots_of(image, a);
-        rows.push_back({pes, speedup_of(columns, pes, "cyclic"), speedup_of(columns, pes, "block"),
-                        speedup_of(shifted, pes, "cyclic"), speedup_of(shifted, pes, "block"),
-                        speedup_of(root, pes, "cyclic"), speedup_of(root, pes, "block"),
+        rows.push_back({pes, speedup_of(columns, pes, Fold::kCyclic), speedup_of(columns, pes, Fold::kBlock),
+                        speedup_of(shifted, pes, Fold::kCyclic), speedup_of(shifted, pes, Fold::kBlock),
+                        speedup_of(root, pes, Fold::kCyclic), speedup_of(root, pes, Fold::kBlock),
                         a * a == pes ? static_load(image, squarest_grid(w, image.height, pes)).speedup : 0});
     }
     return rows;

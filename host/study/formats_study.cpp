@@ -29,8 +29,8 @@ class Steps {
 RingSettings ring_settings(const FormatsSettings& settings) {
     RingSettings ring;
     ring.machine = machine_named("grande");
-    ring.mapping = make_mapping("cyclic", settings.width, settings.height, settings.width,
-                                ring.machine.offset % std::max(settings.width, 1u), "cyclic");
+    ring.mapping = make_mapping(cyclic_mapping(ring.machine.mapping.parameter % std::max(settings.width, 1u)),
+                                {settings.width, settings.height}, settings.width);
     ring.bounces = ring.machine.bounces;
     ring.kernels.lanes = settings.lanes;
     return ring;

@@ -57,7 +57,7 @@ std::uint32_t offset_of(int way, std::uint32_t side, std::uint32_t pes) {
 raya_mapping mapping_of(int way, std::uint32_t side, std::uint32_t pes) {
     if (way == kGrid) return squarest_grid(side, side, pes);
     if (way == kRandom) return random_pixels(side, side, pes);
-    return cyclic(side, side, pes, offset_of(way, side, pes), way >= kFixedBlock ? "block" : "cyclic");
+    return cyclic(side, side, pes, offset_of(way, side, pes), way >= kFixedBlock ? Fold::kBlock : Fold::kCyclic);
 }
 
 Rows rows_of(const CostImage& image) {

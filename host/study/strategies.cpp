@@ -36,7 +36,7 @@ void add_asking(std::vector<Strategy>& all, const raya_mapping& start, std::uint
 std::vector<Strategy> strategies(std::uint32_t size, std::uint32_t pes, std::uint64_t overhead) {
     constexpr std::uint32_t kOffset = 16, kTile = 8;
     const std::uint32_t tile = std::gcd(size, kTile);
-    const auto other = [&](const std::string& text) { return make_mapping(text, size, size, pes, 0, "cyclic"); };
+    const auto other = [&](const MappingRule& rule) { return make_mapping(rule, {size, size}, pes); };
     const raya_mapping columns = cyclic(size, size, pes, 0), grid = squarest_grid(size, size, pes);
     std::vector<Strategy> all;
     const auto add = [&](const char* name, const raya_mapping& mapping) {
@@ -45,8 +45,8 @@ std::vector<Strategy> strategies(std::uint32_t size, std::uint32_t pes, std::uin
     add("column split", columns);
     add("cyclic, p = 16", cyclic(size, size, pes, kOffset % size));
     add("cyclic, p = sqrt(P)", cyclic(size, size, pes, root_offset(pes) % size));
-    add("blocks of scan lines", other("blocks"));
-    add("tiles 8 x 8", other(fmt::format("tiles:{0}x{0}", tile)));
+    add("blocks of scan lines", other(blocks_mapping()));
+    add("tiles 8 x 8", other(tiles_mapping(tile, tile)));
     add("grid", grid);
     add("random", random_pixels(size, size, pes));
     for (const std::uint32_t chunk : {1u, 16u, 64u}) add_asking(all, columns, chunk, 0, overhead);

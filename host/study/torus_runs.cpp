@@ -20,9 +20,9 @@ constexpr std::uint64_t kWordBytes = 4;
 TorusSettings settings_of(const TorusPlan& plan, std::uint32_t size) {
     TorusSettings s;
     s.machine = machine_named("torus");
-    s.machine.topology = links_name(plan.links);
     s.width = s.height = size;
     s.torus = make_torus(plan.nodes, plan.links);
+    s.links = plan.links;
     s.voxels = plan.voxels;
     s.inject = plan.inject;
     s.queue = plan.queue;

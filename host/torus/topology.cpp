@@ -1,4 +1,4 @@
-// The torus machine's nodes and links: text, and the layout of three sides on a torus of two.
+// The torus machine's nodes and links: names, and the layout of three sides on a torus of two.
 #include "host/torus/topology.hpp"
 
 #include <fmt/format.h>
@@ -34,12 +34,6 @@ void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
 }
 
 }  // namespace
-
-Links parse_links(const std::string& text) {
-    for (const Links links : {Links::kTorus3d, Links::kTorus2d})
-        if (text == links_name(links)) return links;
-    throw UserError(fmt::format("--links {}: must be torus3d, six links a node, or torus2d, four", text));
-}
 
 std::string links_name(Links links) { return links == Links::kTorus3d ? "torus3d" : "torus2d"; }
 

@@ -1,4 +1,4 @@
-// The torus machine's nodes and links, from text and back (kernels/shared/torus.h).
+// The torus machine's nodes and links (kernels/shared/torus.h).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,8 +12,7 @@ inline constexpr std::uint32_t kMostNodes = 65536;
 
 enum class Links { kTorus3d, kTorus2d };
 
-/// "torus3d" or "torus2d"; UserError otherwise.
-Links parse_links(const std::string& text);
+/// "torus3d" or "torus2d"
 std::string links_name(Links links);
 
 /// I x J x K nodes. On a 2-D torus the slabs of equal k lie C beside one another, C the divisor of K that makes the two

@@ -35,6 +35,7 @@ struct TorusSettings {
     Machine machine;
     std::uint32_t width = 0, height = 0;  // pixels
     raya_torus torus{};
+    Links links = Links::kTorus3d;  // that `torus` was made with
     Divisions voxels{};
     Injection inject = Injection::kAll;
     std::uint32_t queue = 0;                    // packets that a node's queue holds; 0: what its memory leaves

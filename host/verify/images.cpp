@@ -12,14 +12,19 @@
 namespace raya {
 namespace {
 
+// As the checks are called, shorter than mapping_text().
+std::string mapping_name(const MappingRule& mapping) {
+    if (mapping == column_mapping()) return "column";
+    return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
+}
+
 // What decides how a picture is made, and no bit of it.
 struct Rendering {
     std::string picture;
     bool quick = false;
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's own
-    std::string mapping = "cyclic:8";         // of the ring
+    MappingRule mapping = cyclic_mapping(8);  // of the ring
     std::uint32_t pes = kPictureSide;
-    const char* fold = "cyclic";          // of slots
     std::uint32_t pixels_per_launch = 0;  // of each PE; 0: all
     bool grid = false;
     bool torus = false;
@@ -32,8 +37,8 @@ struct Rendering {
     std::string name() const {
         std::string way = torus ? fmt::format("{} {}{}", links_name(links), sides_text(nodes),
                                               inject == Injection::kRoot ? " root" : "")
-                                : fmt::format("{} on {}{}", mapping, pes, grid ? ", grid" : "");
-        if (fold != std::string("cyclic")) way += fmt::format(", {} fold", fold);
+                                : fmt::format("{} on {}{}", mapping_name(mapping), pes, grid ? ", grid" : "");
+        if (mapping.kind == RAYA_FOLD_BLOCK) way += ", block fold";
         if (pixels_per_launch) way += fmt::format(", {} pixels a launch", pixels_per_launch);
         if (global_words) way += ", global words";
         if (refined) way += ", division refined";
@@ -57,7 +62,7 @@ struct Rendered {
 Rendered render_on_ring(const Verification& v, Session& session, const Rendering& r) {
     const Picture& picture = picture_named(r.picture);
     RingSettings settings = plain_settings(picture);
-    settings.mapping = make_mapping(r.mapping, kPictureSide, kPictureSide, r.pes, 0, r.fold);
+    settings.mapping = make_mapping(r.mapping, {kPictureSide, kPictureSide}, r.pes);
     settings.accel.grid = r.grid;
     settings.pixels_per_launch = r.pixels_per_launch;
     settings.kernels = kernels_for(v, r);
@@ -71,6 +76,7 @@ Rendered render_on_torus(const Verification& v, Session& session, const Renderin
     s.machine = machine_named("torus");
     s.width = s.height = kPictureSide;
     s.torus = make_torus(r.nodes, r.links);
+    s.links = r.links;
     s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // unlike the nodes: some hold several, in turn
     s.inject = r.inject;
     s.bounces = kPictureBounces;
@@ -150,32 +156,41 @@ std::vector<Rendering> usual_renderings() {
     constexpr auto kRoot = Injection::kRoot;
     return {
         {.picture = "glass fp32", .quick = true},
-        {.picture = "glass fp32 filter", .quick = true, .mapping = "cyclic:5", .pes = 10},
-        {.picture = "glass fp32 axes", .quick = true, .mapping = "rows", .pes = 16},
-        {.picture = "glass fp32 diagonals", .quick = true, .mapping = "grid:4x4", .pes = 16},
-        {.picture = "glass fp32", .quick = true, .pes = 7, .fold = "block", .pixels_per_launch = 9},
-        {.picture = "glass fp32", .quick = true, .mapping = "tiles:5x4", .pes = 7},
+        {.picture = "glass fp32 filter", .quick = true, .mapping = cyclic_mapping(5), .pes = 10},
+        {.picture = "glass fp32 axes", .quick = true, .mapping = rows_mapping(), .pes = 16},
+        {.picture = "glass fp32 diagonals", .quick = true, .mapping = grid_mapping(4, 4), .pes = 16},
+        {.picture = "glass fp32",
+         .quick = true,
+         .mapping = cyclic_mapping(8, Fold::kBlock),
+         .pes = 7,
+         .pixels_per_launch = 9},
+        {.picture = "glass fp32", .quick = true, .mapping = tiles_mapping(5, 4), .pes = 7},
         {.picture = "glass fp32", .global_words = true},
         {.picture = "glass fp32", .refined = true},
         {.picture = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
-        {.picture = "glass fp32", .lanes = 4, .group_size = 32, .mapping = "random", .pes = 5},
-        {.picture = "ties fp32", .quick = true, .mapping = "blocks", .pes = 5, .global_words = true, .refined = true},
+        {.picture = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
+        {.picture = "ties fp32",
+         .quick = true,
+         .mapping = blocks_mapping(),
+         .pes = 5,
+         .global_words = true,
+         .refined = true},
         {.picture = "ties fp32"},
         {.picture = "ties fp32", .grid = true},
         {.picture = "ties fp32", .torus = true},
-        {.picture = "polygons fp32", .mapping = "tiles:5x4", .pes = 7},
+        {.picture = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
         {.picture = "polygons fp32", .quick = true, .grid = true},
         {.picture = "polygons fp32", .grid = true, .global_words = true},
         {.picture = "polygons fp32", .quick = true, .torus = true},
         {.picture = "polygons fp32", .torus = true, .global_words = true},
         {.picture = "polygons fp32", .quick = true, .torus = true, .nodes = {3, 2, 2}, .links = k2d, .inject = kRoot},
-        {.picture = "cones fp32", .mapping = "blocks", .pes = 5, .global_words = true},
-        {.picture = "mirrors spa22", .quick = true, .mapping = "column", .pes = kPictureSide},
-        {.picture = "mirrors spa22 filter", .quick = true, .mapping = "cyclic:16", .pes = kPictureSide},
+        {.picture = "cones fp32", .mapping = blocks_mapping(), .pes = 5, .global_words = true},
+        {.picture = "mirrors spa22", .quick = true, .mapping = column_mapping(), .pes = kPictureSide},
+        {.picture = "mirrors spa22 filter", .quick = true, .mapping = cyclic_mapping(16), .pes = kPictureSide},
         {.picture = "cones e5m10", .quick = true, .refined = true},
         {.picture = "mirrors spa22", .refined = true},
         {.picture = "polygons spa22", .torus = true, .refined = true},
-        {.picture = "mirrors spa22 axes", .mapping = "cyclic:3", .pes = 100},
+        {.picture = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
         {.picture = "planes fp32 corners", .grid = true},
         {.picture = "spheres e8m12t"},
         {.picture = "glass e8m21"},

@@ -90,7 +90,7 @@ Scene scene_of(const Picture& picture) {
 RingSettings plain_settings(const Picture& picture) {
     RingSettings settings;
     settings.machine = machine_named("grande");
-    settings.mapping = make_mapping("cyclic", kPictureSide, kPictureSide, 1, 0, "cyclic");
+    settings.mapping = make_mapping(column_mapping(), {kPictureSide, kPictureSide}, 1);
     settings.bounces = kPictureBounces;
     settings.format = parse_format(picture.format);
     settings.sampling = picture.sampling;

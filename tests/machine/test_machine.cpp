@@ -14,7 +14,7 @@ TEST_CASE("the SPA is the paper's, and comes first", "[machine]") {
     const Machine& spa = machine_named("spa");  // Kohata & Ito 1993
     CHECK(machines().front().name == "spa");
     CHECK(spa.pes == 256u);
-    CHECK(spa.offset == 16);
+    CHECK(spa.mapping == cyclic_mapping(16));
     CHECK(spa.pe_memory_bytes == 32u * 1024);
     CHECK(spa.bounces == 8);
     CHECK(spa.topology == "ring+bus");
@@ -24,7 +24,7 @@ TEST_CASE("grande is the same array without the limits", "[machine]") {
     const Machine& grande = machine_named("grande");
     CHECK_FALSE(grande.pes.has_value());
     CHECK_FALSE(grande.pe_memory_bytes.has_value());
-    CHECK(grande.offset == machine_named("spa").offset);
+    CHECK(grande.mapping == machine_named("spa").mapping);
     CHECK(grande.bounces == machine_named("spa").bounces);
 }
 
@@ -40,7 +40,7 @@ TEST_CASE("the SPA's rates are those of the paper's tables", "[machine]") {
         CHECK(machine_named(same).link_words_per_s == spa.link_words_per_s);
         CHECK(machine_named(same).rotation_sync_ms == spa.rotation_sync_ms);
         CHECK(machine_named(same).host_words_per_s == spa.host_words_per_s);
-        CHECK(machine_named(same).mapping == "cyclic");
+        CHECK(machine_named(same).mapping.has_slots());
     }
     CHECK(machine_named("spa1").pes == 1u);
     CHECK(machine_named("spa1").pe_memory_bytes == spa.pe_memory_bytes);
@@ -48,14 +48,17 @@ TEST_CASE("the SPA's rates are those of the paper's tables", "[machine]") {
 
 TEST_CASE("the arrays of others have their mapping, the SPA's numbers and no times", "[machine]") {
     struct Row {
-        const char *name, *mapping;
+        const char* name;
+        MappingRule mapping;
+        std::optional<DynamicPlan> dynamic;
         std::uint32_t pes;
     };
-    for (const Row& row :
-         {Row{"cap", "grid:16x16", 256}, Row{"pixel-machine", "grid:8x8", 64}, Row{"links", "dynamic:1", 256}}) {
+    for (const Row& row : {Row{"cap", grid_mapping(16, 16), {}, 256}, Row{"pixel-machine", grid_mapping(8, 8), {}, 64},
+                           Row{"links", cyclic_mapping(0), DynamicPlan{1, 0, 0}, 256}}) {
         CAPTURE(row.name);
         const Machine& machine = machine_named(row.name);
         CHECK(machine.mapping == row.mapping);
+        CHECK(machine.dynamic == row.dynamic);
         CHECK(machine.pes == row.pes);
         CHECK(machine.format == machine_named("spa").format);
         CHECK_FALSE(machine.pe_memory_bytes.has_value());
@@ -75,8 +78,8 @@ TEST_CASE("the torus is the paper's 64 transputers, and no ring", "[machine]") {
     CHECK(torus.link_words_per_s == 425e3);
     for (const Machine& machine : machines()) {
         CAPTURE(machine.name);
-        CHECK(machine.divides_scene() == (machine.name == "torus"));
-        CHECK(machine.divides_scene() == (machine.topology == "torus3d"));
+        CHECK((machine.kind == MachineKind::kTorus) == (machine.name == "torus"));
+        CHECK((machine.kind == MachineKind::kTorus) == (machine.topology == "torus3d"));
     }
 }
 

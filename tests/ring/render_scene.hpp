@@ -1,6 +1,7 @@
 // Renders on the ring machine in a line, for tests. A device is required: without one these tests fail, they are not
 // skipped.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,9 @@ namespace raya {
 struct RingCase {
     std::uint32_t width = 64, height = 48;
     std::uint32_t pes = 64, offset = 8;
-    std::string fold = "cyclic", machine = "grande", mapping = "cyclic";
+    Fold fold = Fold::kCyclic;
+    std::string machine = "grande";
+    std::optional<MappingRule> mapping{};             // empty: the cyclic one, by offset and fold
     std::uint32_t lanes = 0, group = 0, bounces = 8;  // lanes, group 0: the device's own
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
@@ -27,7 +30,7 @@ struct RingCase {
 inline RingSettings settings_of(const RingCase& c) {
     RingSettings settings;
     settings.machine = machine_named(c.machine);
-    settings.mapping = make_mapping(c.mapping, c.width, c.height, c.pes, c.offset, c.fold);
+    settings.mapping = make_mapping(c.mapping.value_or(cyclic_mapping(c.offset, c.fold)), {c.width, c.height}, c.pes);
     settings.bounces = c.bounces;
     settings.sampling = c.sampling;
     settings.antialias = c.antialias;

@@ -35,7 +35,7 @@ RingCase random_case(SplitMix& random, const std::string& format) {
     c.pes = 1 + random_below(random, random.next() % 2 ? c.width : c.width * c.height);
     while (random.next() % 2 && c.width % c.pes) c.pes = 1 + random_below(random, c.width);
     c.offset = random_below(random, c.width);
-    c.fold = random.next() % 2 ? "block" : "cyclic";
+    c.fold = random.next() % 2 ? Fold::kBlock : Fold::kCyclic;
     c.sampling = c.width % 2 ? Sampling::kCorners : Sampling::kCentres;
     return c;
 }

@@ -117,7 +117,7 @@ TEST_CASE("PEs, offset and fold change no bit, mark or count of anti-aliasing", 
     for (const std::uint32_t pes : {1u, 2u, 5u, 15u, 30u, 31u, 60u, 97u, 330u, 659u, 660u}) {
         c.pes = pes;
         c.offset = random_below(random, c.width);
-        c.fold = random.next() % 2 ? "block" : "cyclic";
+        c.fold = random.next() % 2 ? Fold::kBlock : Fold::kCyclic;
         CAPTURE(kSeed, antialias_name(antialias.method), c.pes, c.offset, c.fold);
         const RingResult result = render_case(session, c);
         CHECK(answer_of(result) == expected);
@@ -175,9 +175,9 @@ TEST_CASE("where a PE's memory is short pixels go round in bands, with the same 
     // The last bands are shorter than the others where the share is odd or PEs own less than it.
     const RingCase cases[] = {{.width = 512, .height = 512, .pes = 256, .offset = 16, .antialias = kFilter},
                               {.width = 45, .height = 45, .pes = 2, .antialias = kFilter},
-                              {.width = 41, .height = 77, .pes = 3, .fold = "block", .antialias = kFilter},
+                              {.width = 41, .height = 77, .pes = 3, .fold = Fold::kBlock, .antialias = kFilter},
                               {.width = 45, .height = 60, .pes = 2, .antialias = kSupersample},
-                              {.width = 640, .height = 64, .pes = 27, .fold = "block", .antialias = kSupersample},
+                              {.width = 640, .height = 64, .pes = 27, .fold = Fold::kBlock, .antialias = kSupersample},
                               {.width = 3, .height = 2600, .pes = 6, .offset = 1, .antialias = kSupersample}};
     for (RingCase c : cases) {
         c.format = "spa22";

@@ -112,14 +112,13 @@ TEST_CASE("rows, blocks, grid, tiles, random: every pixel has one owner, shares 
 }
 
 TEST_CASE("a grid's PEs own one pixel of every A x B rectangle", "[mapping]") {
-    for (const auto& [text, down, across] :
-         {std::tuple{"grid:16x16", 16u, 16u}, {"grid:8x8", 8u, 8u}, {"grid:3x5", 3u, 5u}}) {
-        const raya_mapping m = make_mapping(text, 256, 256, down * across, 0, "cyclic");
+    for (const auto& [down, across] : {std::pair{16u, 16u}, {8u, 8u}, {3u, 5u}}) {
+        const raya_mapping m = make_mapping(grid_mapping(down, across), {256, 256}, down * across);
         for (const auto& [top, left] : {std::pair{0u, 0u}, {7u, 100u}, {239u, 240u}}) {
             std::vector<int> pixels(m.pes, 0);
             for (std::uint32_t j = 0; j < down; ++j)
                 for (std::uint32_t x = 0; x < across; ++x) ++pixels[raya_owner(m, top + j, left + x)];
-            CAPTURE(text, top, left);
+            CAPTURE(down, across, top, left);
             CHECK(pixels == std::vector<int>(m.pes, 1));
         }
     }

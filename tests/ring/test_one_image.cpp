@@ -67,7 +67,7 @@ TEST_CASE("PEs, offset, fold and machine change no bit of the image and no count
     CAPTURE(format);
     const Answer expected = answer_of(render_scene(scene, {.pes = 1, .offset = 0, .format = format}));
     for (const std::uint32_t pes : {1u, 7u, 64u, 256u, 1000u, 64u * 48u})
-        for (const char* fold : {"cyclic", "block"})
+        for (const Fold fold : {Fold::kCyclic, Fold::kBlock})
             for (const std::uint32_t offset : {0u, 16u, 63u}) {
                 CAPTURE(pes, fold, offset);
                 CHECK(answer_of(render_scene(scene, {.pes = pes, .offset = offset, .fold = fold, .format = format})) ==
@@ -83,14 +83,15 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed
     c.group = 1;
     const Answer expected = answer_of(render_scene(scene, c));
     struct Row {
-        const char* mapping;
+        MappingRule mapping;
         std::uint32_t pes,
             supersampled_in;  // smoothed: in groups of so many by supersampling, of the other number by the filter
     };
     // where PEs outnumber lines or tiles, some are idle
-    const Row rows[] = {{"rows", 5, 1},      {"rows", 40, 4},       {"blocks", 5, 4},    {"blocks", 40, 1},
-                        {"grid:3x4", 12, 4}, {"grid:20x5", 100, 1}, {"tiles:6x3", 7, 1}, {"tiles:8x9", 40, 4},
-                        {"random:7", 13, 1}, {"random", 432, 4}};
+    const Row rows[] = {{rows_mapping(), 5, 1},      {rows_mapping(), 40, 4},      {blocks_mapping(), 5, 4},
+                        {blocks_mapping(), 40, 1},   {grid_mapping(3, 4), 12, 4},  {grid_mapping(20, 5), 100, 1},
+                        {tiles_mapping(6, 3), 7, 1}, {tiles_mapping(8, 9), 40, 4}, {random_mapping(7), 13, 1},
+                        {random_mapping(1), 432, 4}};
     for (const Row& row : rows)
         for (const std::uint32_t group : {1u, 4u}) {
             const bool smoothed = method != AntialiasMethod::kNone;
@@ -98,8 +99,8 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, smoothed
             c.mapping = row.mapping;
             c.pes = row.pes;
             c.group = group;
-            CAPTURE(antialias_name(method), c.mapping, c.pes, group);
-            if (smoothed && parse_mapping(c.mapping).kind == RAYA_RANDOM)
+            CAPTURE(antialias_name(method), mapping_text(row.mapping), c.pes, group);
+            if (smoothed && row.mapping.kind == RAYA_RANDOM)
                 CHECK_THROWS_WITH(
                     render_scene(scene, c),
                     Catch::Contains("--mapping random") && Catch::Contains("neighbours live on PEs all over the ring"));
@@ -121,7 +122,7 @@ TEST_CASE("any image size is traced whole, whatever is left over for the last la
         c.height = between(1, 40);
         c.pes = between(1, c.width * c.height);
         c.offset = between(0, c.width - 1);
-        c.fold = i % 2 ? "block" : "cyclic";
+        c.fold = i % 2 ? Fold::kBlock : Fold::kCyclic;
         CAPTURE(seed, i, c.width, c.height, c.pes, c.offset, c.fold);
         const Answer spread = answer_of(render_scene(scene, c));
         c.pes = 1;

@@ -70,14 +70,15 @@ std::uint64_t single_rotations(const Json& trace) {
 
 TEST_CASE("the traced machine ends when the time model says, with the loads that were counted", "[ring]") {
     SplitMix random(1);
-    const std::vector<std::string> mappings = {"cyclic", "column", "rows", "blocks", "grid:4x6", "tiles:4x4"};
+    const std::optional<MappingRule> mappings[] = {
+        {}, column_mapping(), rows_mapping(), blocks_mapping(), grid_mapping(4, 6), tiles_mapping(4, 4)};
     for (int i = 0; i < 24; ++i) {
         RingCase c{.width = 24, .height = 16, .pes = 24, .offset = random_below(random, 24), .machine = "spa"};
-        c.mapping = mappings[random_below(random, mappings.size())];
+        c.mapping = mappings[random_below(random, std::size(mappings))];
         c.lanes = 4;
         c.antialias.method = static_cast<AntialiasMethod>(i % 3);
         const Rendered r = render(c);
-        CAPTURE(i, c.mapping, c.offset);
+        CAPTURE(i, mapping_text(settings_of(c).mapping));
         const Json json = trace_of(r, 24);
         const TraceSchema schema(json);
         CHECK(schema.faults() == std::vector<std::string>{});

@@ -17,7 +17,7 @@ RingResult render_on_spa(Session& session, const Scene& scene, std::uint32_t p) 
     settings.machine = machine_named("spa");
     settings.format = settings.machine.format;
     settings.bounces = settings.machine.bounces;
-    settings.mapping = make_mapping("cyclic", 256, 256, settings.machine.pes.value(), p, "cyclic");
+    settings.mapping = make_mapping(cyclic_mapping(p), {256, 256}, settings.machine.pes.value());
     return RingRenderer(session, scene, settings).render();
 }
 

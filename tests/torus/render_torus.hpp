@@ -37,6 +37,7 @@ inline TorusSettings settings_of(const TorusCase& c) {
     s.width = c.width;
     s.height = c.height;
     s.torus = make_torus(c.nodes, c.links);
+    s.links = c.links;
     s.voxels = c.voxels[0] ? c.voxels : Divisions{c.nodes[0], c.nodes[1], c.nodes[2]};
     s.inject = c.inject;
     s.queue = c.queue;

@@ -1,0 +1,138 @@
+#include "host/cli/parse_mapping.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <string_view>
+
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+/// All of `field` as a number; from_chars does not depend on the locale.
+template <typename Number>
+bool read_number(std::string_view field, Number& number) {
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+    return error == std::errc{} && end == field.data() + field.size();
+}
+
+// A whole number from least to most, written in digits alone.
+std::optional<std::uint32_t> parse_number(std::string_view text, std::uint32_t least, std::uint32_t most) {
+    std::uint32_t number = 0;
+    if (!read_number(text, number) || number < least || number > most) return {};
+    return number;
+}
+
+// "4x8", each 1..kLargestSide, as raya_pair.
+std::optional<std::uint32_t> parse_pair(std::string_view text) {
+    const std::size_t cross = text.find('x');
+    if (cross == std::string_view::npos) return {};
+    const auto first = parse_number(text.substr(0, cross), 1, kLargestSide);
+    const auto second = parse_number(text.substr(cross + 1), 1, kLargestSide);
+    if (!first || !second) return {};
+    return raya_pair(*first, *second);
+}
+
+constexpr std::uint32_t kDefaultSeed = 1;
+constexpr std::uint32_t kLargestSeed = std::numeric_limits<std::uint32_t>::max();
+
+// What follows the colon, where there is one: the parameter, or a refusal that says what it must be.
+std::uint32_t parse_parameter(const MappingText& mapping, std::string_view rest) {
+    std::optional<std::uint32_t> parameter;
+    std::string legal = mapping.name() + " alone";  // of those that take none
+    if (mapping.rule.kind == RAYA_GRID) {
+        parameter = parse_pair(rest);
+        legal = fmt::format("grid:AxB, A rows of B PEs, each 1..{}", kLargestSide);
+    } else if (mapping.rule.kind == RAYA_TILES) {
+        parameter = parse_pair(rest);
+        legal = fmt::format("tiles:WxH, the sides of a tile in pixels, each 1..{}", kLargestSide);
+    } else if (mapping.rule.kind == RAYA_RANDOM) {
+        parameter = parse_number(rest, 0, kLargestSeed);
+        legal = fmt::format("random:seed with a seed 0..{}, or random", kLargestSeed);
+    } else if (mapping.leaves_offset) {
+        parameter = parse_number(rest, 0, kLargestSide - 1);
+        legal = "cyclic:p with an offset p 0..W-1, less than the image's width, or cyclic";
+    }
+    if (!parameter) throw UserError(fmt::format("--mapping {}: must be {}", mapping.text, legal));
+    return *parameter;
+}
+
+[[noreturn]] void refuse_plan(const std::string& text) {
+    throw UserError(
+        fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD] or hybrid:CHUNK[,OVERHEAD[,SHARE]] with "
+                    "CHUNK 1..{} pixels a request, OVERHEAD 0..{} cycles a request, SHARE 0..1 of a PE's own "
+                    "pixels to start with",
+                    text, kLargestChunk, kLargestOverhead));
+}
+
+std::vector<std::string_view> split_at_commas(std::string_view text) {
+    std::vector<std::string_view> fields;
+    for (std::size_t at = 0; at != std::string_view::npos;) {
+        const std::size_t comma = text.find(',', at);
+        fields.push_back(text.substr(at, comma - at));
+        at = comma == std::string_view::npos ? comma : comma + 1;
+    }
+    return fields;
+}
+
+}  // namespace
+
+const std::vector<std::string>& mapping_forms() {
+    static const std::vector<std::string> forms = {"cyclic", "cyclic:p", "column",    "rows",
+                                                   "blocks", "grid:AxB", "tiles:WxH", "random:seed"};
+    return forms;
+}
+
+MappingText parse_mapping(const std::string& text) {
+    struct Name {
+        const char* name;
+        MappingRule alone;  // of the name alone
+        bool needs_more = false, leaves_offset = false;
+    };
+    static const Name names[] = {{"cyclic", cyclic_mapping(0), false, true},
+                                 {"column", column_mapping()},
+                                 {"rows", rows_mapping()},
+                                 {"blocks", blocks_mapping()},
+                                 {"grid", grid_mapping(1, 1), true},
+                                 {"tiles", tiles_mapping(1, 1), true},
+                                 {"random", random_mapping(kDefaultSeed)}};
+    const std::size_t colon = text.find(':');
+    const auto* const found = std::find_if(std::begin(names), std::end(names),
+                                           [&](const Name& n) { return n.name == text.substr(0, colon); });
+    if (found == std::end(names))
+        throw UserError(
+            fmt::format("--mapping {}: no such mapping, there are {}", text, fmt::join(mapping_forms(), ", ")));
+    MappingText mapping{text, found->alone, found->leaves_offset};
+    if (colon == std::string::npos && !found->needs_more) return mapping;
+    mapping.rule.parameter = parse_parameter(mapping, colon == std::string::npos ? "" : text.substr(colon + 1));
+    mapping.leaves_offset = false;
+    return mapping;
+}
+
+Fold parse_fold(const std::string& text) {
+    if (text == "cyclic") return Fold::kCyclic;
+    if (text == "block") return Fold::kBlock;
+    throw UserError(fmt::format("--fold {}: must be cyclic or block", text));
+}
+
+bool is_dynamic(const std::string& text) { return text.starts_with("dynamic") || text.starts_with("hybrid"); }
+
+DynamicPlan parse_dynamic(const std::string& text) {
+    const std::string_view view = text;
+    const bool hybrid = view.starts_with("hybrid:");
+    if (!hybrid && !view.starts_with("dynamic:")) refuse_plan(text);
+    const auto fields = split_at_commas(view.substr(view.find(':') + 1));
+    DynamicPlan plan;
+    if (hybrid) plan.static_share = 0.5;
+    const bool good = fields.size() <= (hybrid ? 3 : 2) && read_number(fields[0], plan.chunk) &&
+                      (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
+                      (fields.size() < 3 || read_number(fields[2], plan.static_share));
+    if (!good || !is_plan(plan)) refuse_plan(text);
+    return plan;
+}
+
+}  // namespace raya

@@ -1,0 +1,47 @@
+// Mappings before an image and its PEs are known (kernels/shared/mapping.h has their definitions).
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "kernels/shared/mapping.h"
+
+namespace raya {
+
+/// How slots go to PEs where there is not one PE for each.
+enum class Fold : std::uint32_t { kCyclic = RAYA_FOLD_CYCLIC, kBlock = RAYA_FOLD_BLOCK };
+
+/// To be made by the functions below.
+struct MappingRule {
+    std::uint32_t kind = RAYA_FOLD_CYCLIC;  // and
+    std::uint32_t parameter = 0;            // of a raya_mapping
+
+    bool has_slots() const { return kind <= RAYA_FOLD_BLOCK; }
+    /// A B of a grid; empty for the mappings that go with any number of PEs.
+    std::optional<std::uint32_t> pes() const {
+        if (kind != RAYA_GRID) return {};
+        return raya_first_of(parameter) * raya_second_of(parameter);
+    }
+    bool operator==(const MappingRule&) const = default;
+};
+
+/// Each row is shifted by `offset` slots against the row above.
+constexpr MappingRule cyclic_mapping(std::uint32_t offset, Fold fold = Fold::kCyclic) {
+    return {static_cast<std::uint32_t>(fold), offset};
+}
+/// Offset 0: Kohata & Ito's column split.
+constexpr MappingRule column_mapping(Fold fold = Fold::kCyclic) { return cyclic_mapping(0, fold); }
+/// Scan lines in turn; contiguous scan lines.
+constexpr MappingRule rows_mapping() { return {RAYA_ROWS, 0}; }
+constexpr MappingRule blocks_mapping() { return {RAYA_BLOCKS, 0}; }
+/// `down` rows of `across` PEs: every `down`-th line, every `across`-th pixel of it. Both below 2^16.
+constexpr MappingRule grid_mapping(std::uint32_t down, std::uint32_t across) {
+    return {RAYA_GRID, down << 16 | across};
+}
+/// Tiles of `width` x `height` pixels in turn. Both below 2^16.
+constexpr MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
+    return {RAYA_TILES, width << 16 | height};
+}
+/// Each pixel at random, shares even.
+constexpr MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
+
+}  // namespace raya

@@ -1,0 +1,128 @@
+// --mapping and --fold as they are written: every form, its canonical text, and what is refused with which words.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <string>
+
+#include "host/cli/parse_mapping.hpp"
+#include "host/error.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
+#include "tests/ring/small_mapping.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+TEST_CASE("every form of a mapping is understood", "[parse]") {
+    const auto rule = [](const std::string& text) { return parse_mapping(text).rule; };
+    CHECK(rule("cyclic:0") == cyclic_mapping(0));
+    CHECK(rule("cyclic:319") == cyclic_mapping(319));
+    CHECK(rule("column") == column_mapping());
+    CHECK(rule("rows") == rows_mapping());
+    CHECK(rule("blocks") == blocks_mapping());
+    CHECK(rule("grid:4x16") == grid_mapping(4, 16));
+    CHECK(rule("grid:16384x16384") == grid_mapping(16'384, 16'384));
+    CHECK(rule("tiles:16x8") == tiles_mapping(16, 8));
+    CHECK(rule("random") == random_mapping(1));
+    CHECK(rule("random:0") == random_mapping(0));
+    CHECK(rule("random:4294967295") == random_mapping(0xffffffffu));
+    CHECK(parse_mapping("cyclic").rule.has_slots());
+    CHECK(parse_mapping("cyclic").leaves_offset);
+    for (const char* text : {"cyclic:0", "cyclic:3", "column", "rows", "blocks", "grid:3x50", "tiles:3x50", "random"})
+        CHECK_FALSE(parse_mapping(text).leaves_offset);
+    CHECK(parse_mapping("cyclic:3").name() == "cyclic");
+    CHECK(parse_mapping("rows").name() == "rows");
+    CHECK(parse_fold("cyclic") == Fold::kCyclic);
+    CHECK(parse_fold("block") == Fold::kBlock);
+}
+
+TEST_CASE("the text of a mapping makes the same mapping again", "[parse]") {
+    constexpr std::uint64_t kSeed = 31;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 500; ++i) {
+        const raya_mapping m = any_mapping(random, 40);
+        const std::string text = mapping_text(m);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, m.parameter, m.kind, text);
+        MappingRule rule = parse_mapping(text).rule;
+        if (m.kind == RAYA_FOLD_BLOCK) rule = cyclic_mapping(rule.parameter, Fold::kBlock);
+        CHECK(rule == MappingRule{m.kind, m.parameter});
+    }
+}
+
+TEST_CASE("a mapping that is not written as it should is refused with the form", "[parse]") {
+    const auto refuses = [](const std::string& text, const std::string& form) {
+        CAPTURE(text);
+        CHECK_THROWS_AS(parse_mapping(text), UserError);
+        CHECK_THROWS_WITH(parse_mapping(text), Contains("--mapping " + text + ":") && Contains(form));
+    };
+    for (const char* text : {"spiral", "", ":", "Cyclic", "cyclic ", "row", "spiral:3"})
+        refuses(text, "there are cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, random:seed");
+    for (const char* text : {"cyclic:", "cyclic:x", "cyclic:-1", "cyclic:1.5", "cyclic: 1", "cyclic:16384",
+                             "cyclic:4294967296", "cyclic:1:2"})
+        refuses(text, "cyclic:p with an offset p 0..W-1");
+    for (const char* text : {"column:", "column:0"}) refuses(text, "must be column alone");
+    refuses("rows:3", "must be rows alone");
+    refuses("blocks:3", "must be blocks alone");
+    for (const std::string rest :
+         {"", ":", ":4", ":4x", ":x4", ":0x4", ":4x0", ":4x4x4", ":16385x1", ":4X4", ":-4x4"}) {
+        refuses("grid" + rest, "grid:AxB, A rows of B PEs, each 1..16384");
+        refuses("tiles" + rest, "tiles:WxH, the sides of a tile in pixels, each 1..16384");
+    }
+    for (const char* text : {"random:", "random:x", "random:-1", "random:4294967296"})
+        refuses(text, "random:seed with a seed 0..4294967295, or random");
+    CHECK_THROWS_WITH(parse_fold("none"), Contains("--fold none") && Contains("cyclic or block"));
+    CHECK_THROWS_AS(parse_fold(""), UserError);
+}
+
+TEST_CASE("dynamic mappings by name, and what is refused", "[parse]") {
+    CHECK(parse_dynamic("dynamic:4") == DynamicPlan{4, 0, 0});
+    CHECK(parse_dynamic("dynamic:1,2000") == DynamicPlan{1, 2'000, 0});
+    CHECK(parse_dynamic("dynamic:268435456,1000000000") == DynamicPlan{268'435'456, 1'000'000'000, 0});
+    CHECK(parse_dynamic("hybrid:8") == DynamicPlan{8, 0, 0.5});
+    CHECK(parse_dynamic("hybrid:8,50") == DynamicPlan{8, 50, 0.5});
+    CHECK(parse_dynamic("hybrid:8,50,0.75") == DynamicPlan{8, 50, 0.75});
+    CHECK(parse_dynamic("hybrid:8,50,0") == DynamicPlan{8, 50, 0});
+    constexpr std::uint64_t kSeed = 7;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 500; ++i) {
+        const double shares[] = {0, 0.5, 1, random.uniform(0, 1)};
+        const DynamicPlan plan{1 + random_below(random, kLargestChunk >> random.next() % 28),
+                               random.next() % 2 * random_below(random, kLargestOverhead + 1), shares[i % 4]};
+        CAPTURE(kSeed, i, plan.chunk, plan.overhead, plan.static_share, dynamic_text(plan));
+        CHECK(parse_dynamic(dynamic_text(plan)) == plan);
+    }
+    for (const std::string text : {"dynamic",
+                                   "dynamic:",
+                                   "dynamic:0",
+                                   "dynamic:-1",
+                                   "dynamic:+1",
+                                   "dynamic: 1",
+                                   "dynamic:1 ",
+                                   "dynamic:1.5",
+                                   "dynamic:x",
+                                   "dynamic:268435457",
+                                   "dynamic:4294967297",
+                                   "dynamic:1,",
+                                   "dynamic:1,-1",
+                                   "dynamic:1,1000000001",
+                                   "dynamic:1,99999999999999999999",
+                                   "dynamic:1,2,0.5",
+                                   "dynamic:,1",
+                                   "hybrid",
+                                   "hybrid:1,0,",
+                                   "hybrid:1,0,1.01",
+                                   "hybrid:1,0,-0.1",
+                                   "hybrid:1,0,-0",
+                                   "hybrid:1,0,nan",
+                                   "hybrid:1,0,-nan",
+                                   "hybrid:1,0,inf",
+                                   "hybrid:1,0,0.5x",
+                                   "hybrid:1,0,0.5,1",
+                                   "hybrid:1,0,0,5",
+                                   "Dynamic:1",
+                                   "cyclic:16",
+                                   ""}) {
+        CHECK_THROWS_AS(parse_dynamic(text), UserError);
+        CHECK_THROWS_WITH(parse_dynamic(text), Contains("--mapping " + text + ":") && Contains("dynamic:CHUNK") &&
+                                                   Contains("1..268435456") && Contains("0..1000000000"));
+    }
+}
