@@ -14,12 +14,12 @@
 #include "host/cli/render_options.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/kernels/operation_rates.hpp"
 #include "host/report/bench_compare.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/table.hpp"
-#include "host/report/whole_file.hpp"
-#include "host/ring/operation_rates.hpp"
 #include "host/scene/nff_reader.hpp"
 
 namespace raya {

@@ -7,7 +7,7 @@
 #include <new>
 
 #include "host/error.hpp"
-#include "host/report/interruption.hpp"
+#include "host/files/interruption.hpp"
 
 namespace raya {
 namespace {

@@ -8,7 +8,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
-#include "host/report/whole_file.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/scene/nff_writer.hpp"
 
 namespace raya {

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "host/error.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/kernels/device_peak.hpp"
 #include "host/report/profile_table.hpp"
-#include "host/report/whole_file.hpp"
-#include "host/ring/device_peak.hpp"
 
 namespace raya {
 namespace {

@@ -1,7 +1,7 @@
 // raya render on a ring machine: pixels are divided among the PEs.
 #include "host/cli/render_command.hpp"
+#include "host/files/progress.hpp"
 #include "host/machine/budget.hpp"
-#include "host/report/progress.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_trace.hpp"
 #include "host/ring/ring_work.hpp"

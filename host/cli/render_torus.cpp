@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "host/cli/render_command.hpp"
-#include "host/report/progress.hpp"
-#include "host/report/whole_file.hpp"
+#include "host/files/progress.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/torus/packet_trace.hpp"
 #include "host/torus/torus_time.hpp"

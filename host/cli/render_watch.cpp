@@ -5,8 +5,8 @@
 #include "host/cl/clock_anchor.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/report/session_trace.hpp"
-#include "host/report/whole_file.hpp"
 
 namespace raya {
 namespace {

@@ -12,7 +12,7 @@
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
-#include "host/report/whole_file.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/verify/worker.hpp"
 

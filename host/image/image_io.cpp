@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "host/error.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/image/pfm.hpp"
 #include "host/image/srgb.hpp"
-#include "host/report/whole_file.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;

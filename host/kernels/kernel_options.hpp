@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/cl/device.hpp"
+#include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_source.hpp"
 #include "host/machine/number_format.hpp"
 

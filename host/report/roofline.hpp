@@ -13,19 +13,10 @@
 #include <vector>
 
 #include "host/cl/profile.hpp"
+#include "host/kernels/peak.hpp"
 #include "host/machine/machine.hpp"
 
 namespace raya {
-
-/// What a small program reached on this device; 0 where the device does not time its commands.
-struct DevicePeak {
-    double fp32_per_s = 0;      // multiply-adds of the widest lanes, one operation each
-    std::string format;         // of the render
-    double multiply_per_s = 0;  // multiply-adds in that format, with the lanes of the render
-    double divide_per_s = 0, root_per_s = 0;
-    double copy_bytes_per_s = 0;   // read and written by copies from buffer to buffer
-    std::uint64_t copy_bytes = 0;  // of each of these buffers
-};
 
 /// What all launches of a kernel's label did together.
 struct KernelWork {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "host/report/gzip.hpp"
+#include "host/files/gzip.hpp"
 
 namespace raya {
 namespace {

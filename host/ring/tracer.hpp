@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host/files/progress.hpp"
 #include "host/kernels/kernels.hpp"
-#include "host/report/progress.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"
 

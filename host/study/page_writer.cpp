@@ -6,8 +6,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "host/files/whole_file.hpp"
 #include "host/report/text_tables.hpp"
-#include "host/report/whole_file.hpp"
 #include "host/study/rows.hpp"
 
 namespace raya {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/report/gzip.hpp"
+#include "host/files/gzip.hpp"
 #include "host/torus/ray_numbers.hpp"
 #include "host/torus/torus_renderer.hpp"
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/files/progress.hpp"
 #include "host/grid/partition.hpp"
 #include "host/image/image.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/machine/load.hpp"
 #include "host/machine/machine.hpp"
-#include "host/report/progress.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/node_memory.hpp"

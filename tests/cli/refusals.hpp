@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/cli/run_program.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 

@@ -3,7 +3,7 @@
 
 #include "host/report/trace_file.hpp"
 #include "tests/cli/render_files.hpp"
-#include "tests/report/gunzip.hpp"
+#include "tests/files/gunzip.hpp"
 #include "tests/report/trace_schema.hpp"
 
 namespace raya {

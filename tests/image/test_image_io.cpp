@@ -16,7 +16,7 @@
 #include "host/error.hpp"
 #include "host/image/image_io.hpp"
 #include "host/image/srgb.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

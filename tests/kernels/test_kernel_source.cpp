@@ -12,8 +12,8 @@
 #include "host/cl/commands.hpp"
 #include "host/error.hpp"
 #include "host/kernels/kernel_source.hpp"
+#include "tests/files/scratch_folder.hpp"
 #include "tests/paths.h"
-#include "tests/report/scratch_folder.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -7,6 +7,7 @@
 #include "tests/number/erring_device.hpp"
 #include "tests/number/oracle_results.hpp"
 #include "tests/number/random_operands.hpp"
+#include "tests/paths.h"
 
 namespace raya {
 namespace {

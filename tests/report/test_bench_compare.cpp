@@ -6,7 +6,7 @@
 
 #include "host/error.hpp"
 #include "host/report/bench_compare.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

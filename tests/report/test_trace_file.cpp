@@ -4,7 +4,7 @@
 
 #include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
-#include "tests/report/gunzip.hpp"
+#include "tests/files/gunzip.hpp"
 #include "tests/report/trace_schema.hpp"
 
 namespace raya {

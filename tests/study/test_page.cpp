@@ -10,7 +10,7 @@
 
 #include "host/error.hpp"
 #include "host/study/page_writer.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "tests/files/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
 namespace raya {

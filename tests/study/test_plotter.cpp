@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "host/report/whole_file.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/plotter.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "tests/files/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
 namespace raya {

@@ -10,7 +10,7 @@
 
 #include "host/scene/split_mix.hpp"
 #include "host/torus/packet_trace.hpp"
-#include "tests/report/gunzip.hpp"
+#include "tests/files/gunzip.hpp"
 
 namespace raya {
 namespace {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "host/verify/verify.hpp"
+#include "tests/files/scratch_folder.hpp"
+#include "tests/paths.h"
 #include "tests/verify/faults.hpp"
 
 namespace raya {

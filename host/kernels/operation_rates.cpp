@@ -1,4 +1,4 @@
-#include "host/ring/operation_rates.hpp"
+#include "host/kernels/operation_rates.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
-#include "host/ring/device_peak.hpp"
+#include "host/kernels/device_peak.hpp"
 
 #include <algorithm>
 
 #include "host/cl/commands.hpp"
 #include "host/kernels/kernel_options.hpp"
-#include "host/ring/operation_rates.hpp"
+#include "host/kernels/operation_rates.hpp"
 
 namespace raya {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "host/report/whole_file.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "host/files/whole_file.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "host/error.hpp"
-#include "host/report/whole_file.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "host/files/whole_file.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,4 @@
-#include "host/report/whole_file.hpp"
+#include "host/files/whole_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "host/error.hpp"
-#include "host/report/interruption.hpp"
+#include "host/files/interruption.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;

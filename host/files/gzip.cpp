@@ -1,4 +1,4 @@
-#include "host/report/gzip.hpp"
+#include "host/files/gzip.hpp"
 
 #include <zlib.h>
 

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "host/report/interruption.hpp"
-#include "host/report/whole_file.hpp"
-#include "tests/report/scratch_folder.hpp"
+#include "host/files/interruption.hpp"
+#include "host/files/whole_file.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

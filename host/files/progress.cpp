@@ -1,4 +1,4 @@
-#include "host/report/progress.hpp"
+#include "host/files/progress.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>

@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "host/report/gzip.hpp"
+#include "host/files/gzip.hpp"
 #include "host/scene/split_mix.hpp"
-#include "tests/report/gunzip.hpp"
+#include "tests/files/gunzip.hpp"
 
 namespace raya {
 namespace {
