@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "host/report/bench_report.hpp"
-#include "host/ring/ring_renderer.hpp"
+#include "host/cl/commands.hpp"
+#include "host/ring/ring_settings.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

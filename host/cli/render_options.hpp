@@ -4,9 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "host/cl/device.hpp"
 #include "host/machine/image_size.hpp"
-#include "host/ring/ring_renderer.hpp"
+#include "host/ring/ring_settings.hpp"
 #include "host/scene/scene.hpp"
 
 namespace CLI {

@@ -3,6 +3,7 @@
 #include "host/files/progress.hpp"
 #include "host/machine/budget.hpp"
 #include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
 #include "host/ring/ring_trace.hpp"
 #include "host/ring/ring_work.hpp"
 #include "host/scene/nff_reader.hpp"

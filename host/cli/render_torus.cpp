@@ -8,6 +8,7 @@
 #include "host/files/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/torus/packet_trace.hpp"
+#include "host/torus/torus_renderer.hpp"
 #include "host/torus/torus_time.hpp"
 #include "host/torus/torus_trace.hpp"
 #include "host/torus/torus_work.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/cli/render_options.hpp"
-#include "host/torus/torus_renderer.hpp"
+#include "host/torus/torus_settings.hpp"
 
 namespace raya {
 

@@ -1,9 +1,10 @@
 // How a render on a ring machine is set up on a device: what is chosen where the user leaves the choice.
 #pragma once
-#include "host/cl/device.hpp"
+#include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_options.hpp"
-#include "host/ring/ring_renderer.hpp"
+#include "host/ring/ring_settings.hpp"
 #include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 

@@ -8,13 +8,10 @@
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_plan.hpp"
+#include "host/ring/schedule.hpp"
 
 namespace raya {
 namespace {
-
-// Labels of the passes' commands, and names of the phases.
-constexpr const char* kTrace = "trace";
-constexpr const char* kRetrace = "supersample";
 
 using Clock = std::chrono::steady_clock;
 
@@ -58,13 +55,6 @@ void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, cons
 
 }  // namespace
 
-double trace_seconds(const RingResult& result) {
-    double ns = 0;
-    for (const LabelSummary& command : result.commands)
-        if (command.label == kTrace || command.label == kRetrace) ns += static_cast<double>(command.total_ns);
-    return ns > 0 ? ns * 1e-9 : result.render_s;
-}
-
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
       settings_(checked(settings, session.device())),
@@ -93,7 +83,7 @@ void RingRenderer::build(const Scene& scene) {
         slice_pixels(settings_,
                      settings_.accel.grid ? std::min<std::size_t>(20, scene.object_count()) : scene.object_count(),
                      options.lanes * options.group_size, memory_.block_pixels));
-    counters_.push_back(tracer_->make_counters(kTrace));
+    counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.words);
     tracer_->clear(counters_.front());
     tracer_->warm_up(broadcast_, marks_, pixels_, counters_.front());
@@ -118,7 +108,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
     }
     contrast_ = std::make_unique<RingContrast>(kernels, setup,
                                                round_to_format(settings_.antialias.threshold, settings_.format));
-    counters_.push_back(tracer_->make_counters(kRetrace));
+    counters_.push_back(tracer_->make_counters(kSupersamplePass));
 }
 
 RingResult RingRenderer::render(const ProgressCallback& progress) {
@@ -153,7 +143,7 @@ void RingRenderer::prepare(RingResult& result) {
     if (contrast_) result.mask = result.image;
     for (PassCounters& counters : counters_) {
         Phase phase;
-        phase.name = result.phases.empty() ? kTrace : kRetrace;
+        phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
         phase.cost = result.all.cost;
         result.phases.push_back(std::move(phase));
         tracer_->clear(counters);
@@ -161,19 +151,19 @@ void RingRenderer::prepare(RingResult& result) {
 }
 
 void RingRenderer::trace(std::uint32_t block, const ProgressCallback& progress) {
-    const StepLog::Step step = session_.step(kTrace);
+    const StepLog::Step step = session_.step(kTracePass);
     const double passes = static_cast<double>(counters_.size());
     const PixelRange range{block, block, std::min(share_, block + memory_.block_pixels)};
     const auto report = [&](double done) { progress((block + done * (range.end - block)) / share_ / passes); };
-    tracer_->trace(kTrace, broadcast_, range, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
+    tracer_->trace(kTracePass, broadcast_, range, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
                    progress ? report : ProgressCallback{});
 }
 
 void RingRenderer::supersample(const ProgressCallback& progress) {
-    const StepLog::Step step = session_.step(kRetrace);
+    const StepLog::Step step = session_.step(kSupersamplePass);
     contrast_->apply(pixels_, *exchange_);
     const auto report = [&](double done) { progress((1 + done) / 2); };
-    tracer_->trace(kRetrace, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(), pixels_,
+    tracer_->trace(kSupersamplePass, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(), pixels_,
                    counters_[1], progress ? report : ProgressCallback{});
 }
 

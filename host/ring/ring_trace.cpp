@@ -9,6 +9,7 @@
 #include "host/machine/budget.hpp"
 #include "host/report/traced_pes.hpp"
 #include "host/ring/mapping.hpp"
+#include "host/ring/route.hpp"
 
 namespace raya {
 namespace {

@@ -3,7 +3,8 @@
 #include <cstddef>
 
 #include "host/report/trace_file.hpp"
-#include "host/ring/ring_renderer.hpp"
+#include "host/ring/ring_result.hpp"
+#include "host/ring/ring_settings.hpp"
 
 namespace raya {
 

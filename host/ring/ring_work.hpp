@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "host/report/roofline.hpp"
-#include "host/ring/ring_renderer.hpp"
+#include "host/ring/ring_result.hpp"
+#include "host/ring/ring_settings.hpp"
 
 namespace raya {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/torus/link_exchange.hpp"
+#include "host/torus/node_status.hpp"
 
 namespace raya {
 

@@ -6,22 +6,13 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/torus/node_status.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {
 
 /// "+x", "-x", "+y", ...
 std::string link_name(std::uint32_t link);
-
-/// What every node says of itself, as the host has read it: [node][RAYA_STATUS_WORDS].
-class NodeStatus {
-  public:
-    explicit NodeStatus(std::uint32_t nodes) : words(std::size_t{nodes} * RAYA_STATUS_WORDS) {}
-    std::uint32_t at(std::uint32_t node, std::uint32_t word) const {
-        return words[std::size_t{node} * RAYA_STATUS_WORDS + word];
-    }
-    std::vector<std::uint32_t> words;
-};
 
 class LinkExchange {
   public:

@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/machine.hpp"
 #include "host/torus/link_exchange.hpp"
+#include "host/torus/node_buffers.hpp"
 #include "host/torus/node_kernels.hpp"
 #include "host/torus/node_memory.hpp"
-#include "host/torus/torus_renderer.hpp"
+#include "host/torus/packet_record.hpp"
+#include "host/torus/torus_result.hpp"
+#include "host/torus/torus_settings.hpp"
 
 namespace raya {
 

@@ -1,175 +1,21 @@
-// Queue and boxes of a torus node, weighed against its memory; and what would do where they do not fit.
-#include <fmt/format.h>
+#include "host/torus/node_buffers.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 
-#include "host/error.hpp"
-#include "host/torus/node_memory.hpp"
-#include "host/torus/topology.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
-namespace {
-
-constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
-constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
-
-// The longest queue from `least` to `most` that fits beside the words; `least` fits.
-std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t least,
-                            std::uint32_t most) {
-    while (most > least && node_bytes(words, buffers_for(most), links) > memory) --most;
-    return most;
-}
-
-// KB with a decimal: what is needed rounded up, what there is rounded down, so that too much always reads as too much.
-std::string kb_text(std::uint64_t tenths) { return fmt::format("{}.{} KB", tenths / 10, tenths % 10); }
-std::string needed_kb(std::uint64_t bytes) { return kb_text((10 * bytes + 1023) / 1024); }
-std::string present_kb(std::uint64_t bytes) { return kb_text(10 * bytes / 1024); }
-
-// What is asked of every node.
-struct Demand {
-    const std::string& scene;
-    const NodeMemories& memories;
-    const raya_torus& torus;
-    std::uint64_t limit;  // bytes
-    NodeBuffers buffers;
-
-    std::uint32_t nodes() const { return raya_nodes(torus); }
-    std::uint64_t words(std::uint32_t node) const { return memories.starts[node + 1] - memories.starts[node]; }
-    std::uint64_t bytes(std::uint64_t words) const { return node_bytes(words, buffers, links_of_node(torus)); }
-};
-
-std::uint32_t fullest_node(const NodeMemories& memories) {
-    std::uint32_t fullest = 0;
-    const auto words = [&](std::uint32_t node) { return memories.starts[node + 1] - memories.starts[node]; };
-    for (std::uint32_t node = 1; node + 1 < memories.starts.size(); ++node)
-        if (words(node) > words(fullest)) fullest = node;
-    return fullest;
-}
-
-// "node 219 (voxel 3, 3, 3 with 2310 objects)"
-std::string node_text(const NodeMemories& memories, std::uint32_t number) {
-    const std::uint32_t* const words = memories.words.data() + memories.starts[number];
-    raya_node node;
-    std::memcpy(&node, words, sizeof node);
-    std::uint64_t objects = node.job.objects.planes;
-    for (std::uint32_t local = 0; local < node.voxels; ++local) {
-        raya_voxel_memory voxel;
-        std::memcpy(&voxel, words + node.voxels_at + local * (sizeof voxel / sizeof *words), sizeof voxel);
-        objects += voxel.objects.spheres + voxel.objects.polygons + voxel.objects.cones;
-    }
-    std::string voxels = fmt::format("{} voxels", node.voxels);
-    if (node.voxels == 1) {
-        const std::uint32_t voxel = raya_voxel_of_node(node.torus, node.grid, number, 0);
-        const raya_place at = raya_place_of(voxel, node.grid.divisions[0], node.grid.divisions[1]);
-        voxels = fmt::format("voxel {}, {}, {}", at.at[0], at.at[1], at.at[2]);
-    }
-    return fmt::format("node {} ({} with {} object{})", number, voxels, objects, objects == 1 ? "" : "s");
-}
-
-// Twice as many nodes along the shortest side, the first of equals.
-std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
-    *std::min_element(nodes.begin(), nodes.end()) *= 2;
-    return nodes;
-}
-
-// "--nodes 16x16x8", or nothing where no machine fits that has up to 65,536 nodes.
-std::string larger_machine(const Demand& demand, const NodeTrial& trial) {
-    const std::uint32_t* const own = demand.torus.nodes;
-    // A torus with sides I x J x 1 may be of either kind; that of more links needs no less memory.
-    const Links links = demand.torus.sides[2] != own[2] ? Links::kTorus2d : Links::kTorus3d;
-    std::array<std::uint32_t, 3> nodes = doubled({own[0], own[1], own[2]});
-    for (std::uint64_t count = 2 * demand.nodes(); count <= kMostNodes; count *= 2, nodes = doubled(nodes)) {
-        const std::uint32_t node_links = links_of_node(make_torus(nodes, links));
-        const auto fits = [&](std::uint64_t words) {
-            return node_bytes(words, demand.buffers, node_links) <= demand.limit;
-        };
-        // Smaller voxels hold more copies, so no machine does whose nodes could not even share these words evenly.
-        if (!fits(demand.memories.words.size() / count)) continue;
-        const std::optional<TrialNodes> tried = trial(nodes);
-        if (tried && fits(tried->words))
-            return fmt::format("--nodes {}{}", sides_text(nodes),
-                               tried->voxels == nodes ? "" : " --voxels " + sides_text(tried->voxels));
-    }
-    return {};
-}
-
-std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fewest, const NodeTrial& trial) {
-    const std::uint32_t links = links_of_node(demand.torus);
-    const std::uint64_t whole_kb = (demand.bytes(words) + 1023) / 1024;
-    const std::string memory = fmt::format("--pe-memory {}", 1024 * whole_kb);
-    if (node_bytes(words, buffers_for(fewest), links) <= demand.limit)
-        return fmt::format("use --queue {} or {}",
-                           longest_queue(words, links, demand.limit, fewest, demand.buffers.queue), memory);
-    if (!trial) return "use " + memory;
-    const std::string machine = larger_machine(demand, trial);
-    if (machine.empty()) return fmt::format("more nodes, up to {}, would not do; use {}", kMostNodes, memory);
-    return fmt::format("use {} or {}", machine, memory);
-}
-
-[[noreturn]] void refuse(const Demand& demand, std::uint32_t fewest, const NodeTrial& trial) {
-    const std::uint32_t fullest = fullest_node(demand.memories);
-    std::uint32_t fit = 0;
-    for (std::uint32_t node = 0; node < demand.nodes(); ++node) fit += demand.bytes(demand.words(node)) <= demand.limit;
-    const std::uint64_t words = demand.words(fullest);
-    throw UserError(
-        fmt::format("{}: does not fit: {} of {} nodes can hold what they have to, {} cannot; {} needs {} "
-                    "beside {} of buffers, a node has {}; {}",
-                    demand.scene, fit, demand.nodes(), demand.nodes() - fit, node_text(demand.memories, fullest),
-                    needed_kb(4 * words), needed_kb(demand.bytes(0)), present_kb(demand.limit),
-                    remedies(demand, words, fewest, trial)));
-}
-
-}  // namespace
 
 NodeBuffers buffers_for(std::uint32_t queue) { return {queue, std::max(1u, queue / 4)}; }
 
 std::uint32_t default_queue(std::uint32_t nodes) { return std::min(8192u, (1u << 24) / nodes); }
 
 std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::uint32_t links) {
+    constexpr std::uint64_t kRayBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
+    constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
     const std::uint64_t return_boxes = links > 0 ? links + 1 : 0;
-    return sizeof(std::uint32_t) * words + kPacketBytes * (buffers.queue + std::uint64_t{2} * links * buffers.box) +
+    return sizeof(std::uint32_t) * words + kRayBytes * (buffers.queue + std::uint64_t{2} * links * buffers.box) +
            kReturnBytes * return_boxes * buffers.box;
-}
-
-std::uint32_t links_of_node(const raya_torus& torus) {
-    return static_cast<std::uint32_t>(
-        2 * std::count_if(std::begin(torus.sides), std::end(torus.sides), [](std::uint32_t side) { return side > 1; }));
-}
-
-NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
-                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t fewest,
-                         const NodeTrial& trial) {
-    fewest = std::max(1u, fewest);
-    if (queue > 0 && queue < fewest)
-        throw UserError(
-            fmt::format("{}: --queue {}: the tree of a single ray can ask for {} packets; use --queue {} or more",
-                        scene, queue, fewest, fewest));
-    const std::uint32_t most = queue > 0 ? queue : std::max(default_queue(raya_nodes(torus)), fewest);
-    if (!memory_bytes) return buffers_for(most);
-    const Demand demand{scene, memories, torus, *memory_bytes, buffers_for(queue > 0 ? queue : fewest)};
-    const std::uint64_t words = demand.words(fullest_node(memories));
-    if (demand.bytes(words) > *memory_bytes) refuse(demand, fewest, trial);
-    return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, most));
-}
-
-void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
-                         const DeviceInfo& device) {
-    const auto fits = [&](const NodeBuffers& b) {
-        const std::uint64_t queues = kPacketBytes * nodes * b.queue;
-        const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + b.box);
-        const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
-        return std::max(queues, boxes) <= device.max_allocation_bytes && all <= device.global_memory_bytes;
-    };
-    if (fits(buffers)) return;
-    std::uint32_t queue = buffers.queue;
-    while (queue > 1 && !fits(buffers_for(queue))) queue /= 2;
-    throw UserError(
-        fmt::format("{}: queues of {} packets and their boxes in {} nodes do not fit into {}; use --queue {} or "
-                    "fewer nodes",
-                    scene, buffers.queue, nodes, device.name, queue));
 }
 
 }  // namespace raya

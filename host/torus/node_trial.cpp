@@ -1,6 +1,4 @@
-// Tries a job on larger torus machines, for the remedy of a refusal.
-#include <cstdint>
-#include <optional>
+#include "host/torus/node_trial.hpp"
 
 #include "host/error.hpp"
 #include "host/torus/node_memory.hpp"

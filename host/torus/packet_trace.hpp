@@ -5,8 +5,8 @@
 #include <string>
 
 #include "host/files/gzip.hpp"
+#include "host/torus/packet_record.hpp"
 #include "host/torus/ray_numbers.hpp"
-#include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "host/torus/node_memory.hpp"
+#include "host/torus/node_buffers.hpp"
 
 namespace raya {
 

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "host/error.hpp"
 
 namespace raya {
@@ -43,6 +46,11 @@ raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
     if (links == Links::kTorus3d) return {{i, j, k}, {i, j, k}, 1};
     const std::uint32_t slabs = slabs_beside(nodes);
     return {{i, j, k}, {i * slabs, j * (k / slabs), 1}, slabs};
+}
+
+std::uint32_t links_of_node(const raya_torus& torus) {
+    return static_cast<std::uint32_t>(
+        2 * std::count_if(std::begin(torus.sides), std::end(torus.sides), [](std::uint32_t side) { return side > 1; }));
 }
 
 std::string sides_text(const std::array<std::uint32_t, 3>& sides) {

@@ -19,6 +19,9 @@ std::string links_name(Links links);
 /// sides most alike (of equals the lower). UserError unless 1 <= I, J, K and there are at most kMostNodes nodes.
 raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links);
 
+/// Links of each node that lead to another node: 6, 4, or fewer where a side of the torus is 1.
+std::uint32_t links_of_node(const raya_torus& torus);
+
 /// "4x4x4"
 std::string sides_text(const std::array<std::uint32_t, 3>& sides);
 

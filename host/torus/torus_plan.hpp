@@ -2,11 +2,12 @@
 #pragma once
 #include <cstdint>
 
-#include "host/cl/device.hpp"
+#include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
 #include "host/torus/node_memory.hpp"
-#include "host/torus/torus_renderer.hpp"
+#include "host/torus/torus_settings.hpp"
 
 namespace raya {
 

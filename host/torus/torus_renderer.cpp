@@ -8,6 +8,7 @@
 
 #include "host/error.hpp"
 #include "host/machine/t805.hpp"
+#include "host/torus/buffer_plan.hpp"
 #include "host/torus/census.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/node_array.hpp"

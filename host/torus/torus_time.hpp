@@ -1,7 +1,8 @@
 // Modelled time of a render on a torus of T805s, from what was counted: two bounds, and what makes them.
 #pragma once
 #include "host/machine/time_model.hpp"
-#include "host/torus/torus_renderer.hpp"
+#include "host/torus/torus_result.hpp"
+#include "kernels/shared/torus.h"
 
 namespace raya {
 

@@ -11,6 +11,7 @@
 #include "host/machine/t805.hpp"
 #include "host/report/traced_pes.hpp"
 #include "host/torus/packet_trace.hpp"
+#include "host/torus/topology.hpp"
 
 namespace raya {
 namespace {

@@ -6,7 +6,10 @@
 
 #include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
-#include "host/torus/torus_renderer.hpp"
+#include "host/torus/packet_record.hpp"
+#include "host/torus/superstep.hpp"
+#include "host/torus/torus_result.hpp"
+#include "kernels/shared/torus.h"
 
 namespace raya {
 

@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "host/report/roofline.hpp"
-#include "host/torus/torus_renderer.hpp"
+#include "host/torus/torus_result.hpp"
+#include "host/torus/torus_settings.hpp"
 
 namespace raya {
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "host/verify/pictures.hpp"
 #include "host/verify/verify.hpp"

@@ -8,7 +8,7 @@
 #include "host/image/image.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/ring/antialias.hpp"
-#include "host/ring/ring_renderer.hpp"
+#include "host/ring/ring_settings.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

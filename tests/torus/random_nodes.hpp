@@ -7,7 +7,9 @@
 #include <set>
 #include <vector>
 
+#include "host/torus/buffer_plan.hpp"
 #include "host/torus/node_memory.hpp"
+#include "host/torus/topology.hpp"
 #include "tests/kernels/random_scene.hpp"
 #include "tests/torus/random_torus.hpp"
 

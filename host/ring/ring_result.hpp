@@ -1,0 +1,50 @@
+// What a render on a ring machine made, counted and measured.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/cl/profile.hpp"
+#include "host/grid/accel.hpp"
+#include "host/image/image.hpp"
+#include "host/machine/communication.hpp"
+#include "host/machine/load.hpp"
+#include "host/machine/machine.hpp"
+#include "host/ring/cost_image.hpp"
+#include "host/ring/pe_memory.hpp"
+
+namespace raya {
+
+/// Names of the phases, and labels of their commands.
+inline constexpr const char *kTracePass = "trace", *kSupersamplePass = "supersample";
+
+/// What was counted in one phase of a render.
+struct Phase {
+    std::string name;  // kTracePass, kSupersamplePass
+    EventCounts events{};
+    Load load;       // modelled cycles of each PE, from its own counters
+    CostImage cost;  // modelled cycles of each pixel
+};
+
+struct RingResult {
+    Image image;
+    std::vector<Phase> phases;              // the first pass, and supersampling where it was asked for
+    Phase all;                              // their sums
+    Image mask;                             // 1 where a pixel was supersampled, else 0; empty without supersampling
+    std::uint64_t recomputed = 0;           // pixels supersampled
+    std::optional<std::uint64_t> requests;  // of a simulated dynamic distribution
+    Communication communication;
+    PeMemory pe_memory;
+    std::optional<AccelSummary> accel;  // of the grid that rays walked
+    bool words_local = true;            // PEs copied the broadcast words into local memory at each launch
+    std::uint32_t lanes = 0, group_size = 0;
+    std::string build_options;
+    double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
+    std::vector<LabelSummary> commands;
+};
+
+/// Seconds that tracing one image took on the device; by the host's clock where the device does not time its commands.
+double trace_seconds(const RingResult& result);
+
+}  // namespace raya

@@ -1,0 +1,29 @@
+// Queue and boxes weighed against a node's memory and the device's; and what would do where they do not fit.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "host/cl/device_info.hpp"
+#include "host/torus/node_buffers.hpp"
+#include "host/torus/node_memory.hpp"
+#include "host/torus/node_trial.hpp"
+
+namespace raya {
+
+/// The queue asked for (`queue` > 0), or as many packets as the memory leaves beside the fullest node's words, at most
+/// default_queue(); boxes as buffers_for() says.
+/// UserError where words or buffers do not fit `memory_bytes` (empty: no limit): how many of the nodes fit and how many
+/// do not, the fullest one with its number, voxels, objects and bytes beside the limit; the remedy: how many nodes
+/// would do (found by `trial`, in a second or so; without one that is left out), or how much memory. UserError too
+/// where the queue is shorter than `fewest` packets, which the tree of a single ray can ask for: the message names that
+/// number.
+NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
+                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t fewest,
+                         const NodeTrial& trial = {});
+
+/// UserError where the device cannot hold the queues and boxes of all nodes; it names the longest queue that it can.
+void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
+                         const DeviceInfo& device);
+
+}  // namespace raya

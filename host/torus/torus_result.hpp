@@ -1,0 +1,42 @@
+// What a render on the torus machine made, counted and measured.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host/cl/profile.hpp"
+#include "host/image/image.hpp"
+#include "host/machine/load.hpp"
+#include "host/machine/machine.hpp"
+#include "host/torus/node_buffers.hpp"
+#include "host/torus/superstep.hpp"
+#include "kernels/shared/packet.h"
+
+namespace raya {
+
+/// Packets of each kind (RAYA_KIND_* of kernels/shared/packet.h).
+using PacketCounts = std::array<std::uint64_t, RAYA_KINDS>;
+
+struct TorusResult {
+    Image image;  // pixels outside the subset are 0
+    EventCounts events{};
+    Load load;  // modelled cycles of each node
+    std::vector<Superstep> supersteps;
+    PacketCounts made{}, ended{};
+    std::uint64_t hops = 0;                   // packets over links
+    std::vector<std::uint64_t> link_words;    // [node][RAYA_LINKS]: words sent over each link
+    std::vector<std::uint64_t> link_packets;  // [node][RAYA_LINKS]
+    std::uint64_t queue_max = 0;              // most packets that any node's queue held
+    std::uint64_t copies = 0;                 // of objects in several voxels
+    NodeBuffers buffers;
+    std::uint64_t node_bytes = 0;     // of the fullest node: words and buffers
+    std::uint64_t copied_words = 0;   // of the scene, by all nodes into local memory, whenever a kernel starts
+    std::uint64_t contributions = 0;  // return packets that reached the host
+    std::uint32_t lanes = 0, group_size = 0;
+    std::string build_options;
+    double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
+    std::vector<LabelSummary> commands;
+};
+
+}  // namespace raya

@@ -1,0 +1,38 @@
+// What a render on the torus machine is asked for.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "host/grid/partition.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "host/machine/machine.hpp"
+#include "host/scene/packer.hpp"
+#include "host/torus/topology.hpp"
+
+namespace raya {
+
+/// Who makes the primary rays: the root, or every node those that enter the box at its voxels.
+enum class Injection { kRoot, kAll };
+
+/// Primary rays of the pixels first, first + stride, ... alone: a group of several that share the screen.
+struct PixelSubset {
+    std::uint32_t stride = 1, first = 0;
+};
+
+struct TorusSettings {
+    Machine machine;
+    std::uint32_t width = 0, height = 0;  // pixels
+    raya_torus torus{};
+    Links links = Links::kTorus3d;  // that `torus` was made with
+    Divisions voxels{};
+    Injection inject = Injection::kAll;
+    std::uint32_t queue = 0;                    // packets that a node's queue holds; 0: what its memory leaves
+    std::optional<std::uint64_t> memory_bytes;  // of a node; empty: no limit
+    PixelSubset pixels;
+    std::uint32_t bounces = 8;
+    NumberFormat format;
+    Sampling sampling = Sampling::kCentres;
+    KernelChoice kernels;
+};
+
+}  // namespace raya
