@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "host/report/bench_report.hpp"
 #include "host/cl/commands.hpp"
+#include "host/report/bench_report.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/scene/scene.hpp"
 

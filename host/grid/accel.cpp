@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 #include <utility>
 
 #include "host/error.hpp"
 #include "host/grid/hit_regions.hpp"
+#include "host/scene/word_records.hpp"
 
 namespace raya {
 namespace {
@@ -30,6 +30,9 @@ double longest_side(const Box& box) {
 }
 
 std::uint32_t word_number(std::size_t at) { return static_cast<std::uint32_t>(at); }
+
+// The next word at which a row of four may start: aligned rows need fewer memory accesses.
+std::size_t in_rows(std::size_t at) { return (at + 3) / 4 * 4; }
 
 // The sections of a grid's words behind its header.
 struct GridLists {
@@ -123,37 +126,34 @@ Partition accel_partition(const PackedJob& job, const NumberFormat& format, cons
 }
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
-    constexpr std::size_t kHeaderWords = sizeof(raya_grid_words) / sizeof(std::uint32_t);
-    raya_job job_header;
-    std::memcpy(&job_header, job.words.data(), sizeof job_header);
-    std::vector<std::uint32_t>& words = job.words;
-    words.resize((words.size() + 3) / 4 * 4);  // aligned rows need fewer memory accesses
-    const std::size_t at = words.size();
-    const GridLists lists = grid_lists(words, job_header.objects, p);
+    const GridLists lists = grid_lists(job.words(), job.header().objects, p);
+    const std::size_t end = job.words().size(), at = in_rows(end);
     raya_grid_words header{};
-    std::size_t next = at + kHeaderWords;
+    std::size_t next = at + kWordsOf<raya_grid_words>;
     const auto place = [&](std::size_t count) { return word_number(std::exchange(next, next + count)); };
     header.grid = p.grid;
     header.apart = word_number(p.apart.size());
     header.apart_at = place(p.apart.size());
     header.voxels_at = place(lists.voxels.size());
-    next = (next + 3) / 4 * 4;
+    next = in_rows(next);
     header.rows_at = place(lists.rows.size());
     header.numbers_at = place(lists.numbers.size());
     if (next > kMostWords || lists.numbers.size() > RAYA_ROW_NUMBER)
         throw UserError(
             fmt::format("--accel grid packs to {} words, more than 32-bit numbers reach; take fewer voxels", next));
-    words.resize(next);
-    std::memcpy(&words[at], &header, sizeof header);
+    std::vector<std::uint32_t> words(next - end);
+    put_record(words, at - end, header);
     const auto put = [&](const std::vector<std::uint32_t>& from, std::uint32_t to) {
-        std::copy(from.begin(), from.end(), words.begin() + to);
+        std::copy(from.begin(), from.end(), words.begin() + static_cast<std::ptrdiff_t>(to - end));
     };
     put(p.apart, header.apart_at);
     put(lists.voxels, header.voxels_at);
     put(lists.rows, header.rows_at);
     put(lists.numbers, header.numbers_at);
-    job_header.grid_at = word_number(at);
-    std::memcpy(words.data(), &job_header, sizeof job_header);
+    job.append(words);
+    raya_job with_grid = job.header();
+    with_grid.grid_at = word_number(at);
+    job.set_header(with_grid);
     return {{p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]}, p.copies(), next - at, header.apart};
 }
 

@@ -27,7 +27,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace raya {
 namespace {
@@ -73,10 +72,7 @@ bool HitRegion::touches(const Box& part) const {
 
 HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double reach,
                        const std::vector<std::uint32_t>& apart)
-    : words_(&job.words) {
-    raya_job header;
-    std::memcpy(&header, job.words.data(), sizeof header);
-    objects_ = header.objects;
+    : words_(&job.words()), objects_(job.header().objects) {
     const std::uint32_t first_polygon = objects_.spheres + objects_.planes;
     for (std::uint32_t number = 0; number < first_polygon + objects_.polygons + objects_.cones; ++number)
         if ((number < objects_.spheres || number >= first_polygon) &&
@@ -88,7 +84,7 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
     stretch_ = std::ldexp(16.0, -format.fraction_bits) + 0x1p-21;  // RAYA_STRETCH, and its own rounding
     far_ = std::ldexp(1.0, std::min(quarter - 1, 4 * 15));
     square_room_ = std::ldexp(1.0, quarter - 1);
-    extent_ = header.extent;
+    extent_ = job.header().extent;
     reach_ = reach * extent_;
     known_ = format.fraction_bits >= kFewestBits && reach_ <= square_room_ && cones_known();
     if (!known_) reach_ = far_;

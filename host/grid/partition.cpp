@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "host/error.hpp"
@@ -144,9 +143,7 @@ double reach_for(const PackedJob& job, const NumberFormat& format, const Divisio
                  const std::vector<std::uint32_t>& apart) {
     constexpr double kLeast = 2, kMost = 1024, kShareOfVoxel = 1.0 / 16;
     const HitRegions regions(job, format, kLeast, apart);
-    raya_job header;
-    std::memcpy(&header, job.words.data(), sizeof header);
-    if (!regions.known() || header.objects.planes == 0) return kLeast;
+    if (!regions.known() || job.header().objects.planes == 0) return kLeast;
     const Box box = box_around(regions);
     double side = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)

@@ -9,14 +9,18 @@ namespace {
 // they are many and few of them are read, they stay where they are.
 bool words_local(const PackedJob& job, const DeviceInfo& device, bool accel) {
     constexpr std::size_t kMostCopied = 64 * 1024;
-    const std::size_t bytes = 4 * job.words.size() + sizeof(cl_uint);
+    const std::size_t bytes = 4 * job.words().size() + sizeof(cl_uint);
     return bytes <= (accel ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
 }
 
 }  // namespace
 
 JobSettings job_settings(const RingSettings& settings) {
-    return {settings.mapping, settings.sampling, settings.bounces, cycles_of_events(), settings.format};
+    return {{settings.mapping.width, settings.mapping.height},
+            settings.sampling,
+            settings.bounces,
+            cycles_of_events(),
+            settings.format};
 }
 
 RingSettings checked(RingSettings settings, const DeviceInfo& device) {
@@ -51,9 +55,9 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .accel = settings.accel.grid,
             .filter = settings.kernels.filter && !scene.spheres.empty() &&
                       sphere_filter_holds(settings.format, scene_extent(scene)),
-            .polygons = job.has_polygons,
-            .patches = job.has_patches,
-            .cones = job.has_cones};
+            .polygons = job.has_polygons(),
+            .patches = job.has_patches(),
+            .cones = job.has_cones()};
 }
 
 }  // namespace raya

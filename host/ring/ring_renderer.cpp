@@ -19,13 +19,20 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings) {
     const StepLog::Step step = session.step("pack scene");
-    return pack_job(scene, job_settings(settings));
+    PackedJob job = pack_job(scene, job_settings(settings));
+    raya_job on_ring = job.header();
+    on_ring.mapping = settings.mapping;
+    job.set_header(on_ring);
+    return job;
 }
 
-AccelSummary with_grid(const Session& session, PackedJob& job, const RingSettings& settings) {
-    if (!settings.accel.grid) return {};
+// What every PE holds of the scene.
+RingJob ring_job(const Session& session, const Scene& scene, const RingSettings& settings) {
+    RingJob all{packed(session, scene, settings), {}};
+    if (!settings.accel.grid) return all;
     const StepLog::Step step = session.step("divide scene");
-    return append_grid(job, accel_partition(job, settings.format, settings.accel));
+    all.grid = append_grid(all.job, accel_partition(all.job, settings.format, settings.accel));
+    return all;
 }
 
 // Calls `move` for each pixel of the PEs' blocks, which start at pixel `block` of each share, with its number in the
@@ -58,16 +65,15 @@ void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, cons
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
       settings_(checked(settings, session.device())),
-      job_(packed(session, scene, settings_)),
-      accel_(with_grid(session, job_, settings_)),
+      job_(ring_job(session, scene, settings_)),
       share_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, {.scene = scene.name,
-                                                 .job_words = job_.words.size(),
+                                                 .job_words = job_.job.words().size(),
                                                  .bounces = settings_.bounces,
                                                  .share = share_,
                                                  .antialias = settings_.antialias.method})),
       bus_(session, communication_),
-      broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.words.size())),
+      broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.job.words().size())),
       pixels_(session.buffer<float>("pixel blocks", 3ull * settings_.mapping.pes * memory_.block_pixels)),
       marks_(session.buffer<std::uint8_t>("no marks", 1)) {
     build(scene);
@@ -76,7 +82,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 void RingRenderer::build(const Scene& scene) {
     const StepLog::Step building = session_.step("set up device");
     const Clock::time_point start = Clock::now();
-    const KernelOptions options = kernel_options(settings_, job_, scene, session_.device());
+    const KernelOptions options = kernel_options(settings_, job_.job, scene, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
         kernels, settings_.mapping.pes, memory_.block_pixels,
@@ -84,7 +90,7 @@ void RingRenderer::build(const Scene& scene) {
                      settings_.accel.grid ? std::min<std::size_t>(20, scene.object_count()) : scene.object_count(),
                      options.lanes * options.group_size, memory_.block_pixels));
     counters_.push_back(tracer_->make_counters(kTracePass));
-    bus_.broadcast(broadcast_, job_.words);
+    bus_.broadcast(broadcast_, job_.job.words());
     tracer_->clear(counters_.front());
     tracer_->warm_up(broadcast_, marks_, pixels_, counters_.front());
     if (settings_.antialias.method != AntialiasMethod::kNone) build_exchange(options);
@@ -118,7 +124,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     const Clock::time_point start = Clock::now();
     RingResult result;
     prepare(result);
-    bus_.broadcast(broadcast_, job_.words);
+    bus_.broadcast(broadcast_, job_.job.words());
     for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) {
         trace(block, progress);
         if (filter_) filter_->apply(pixels_, *exchange_);
@@ -163,8 +169,8 @@ void RingRenderer::supersample(const ProgressCallback& progress) {
     const StepLog::Step step = session_.step(kSupersamplePass);
     contrast_->apply(pixels_, *exchange_);
     const auto report = [&](double done) { progress((1 + done) / 2); };
-    tracer_->trace(kSupersamplePass, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(), pixels_,
-                   counters_[1], progress ? report : ProgressCallback{});
+    tracer_->trace(kSupersamplePass, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(),
+                   pixels_, counters_[1], progress ? report : ProgressCallback{});
 }
 
 void RingRenderer::gather(std::uint32_t block, RingResult& result) {
@@ -239,7 +245,7 @@ void RingRenderer::describe(RingResult& result) {
     result.all.name = "all";
     result.communication = communication_;
     result.pe_memory = memory_;
-    if (settings_.accel.grid) result.accel = accel_;
+    if (settings_.accel.grid) result.accel = job_.grid;
     result.words_local = tracer_->options().words_local;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;

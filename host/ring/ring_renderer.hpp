@@ -16,6 +16,12 @@
 
 namespace raya {
 
+/// A job, and what was made of the grid behind it.
+struct RingJob {
+    PackedJob job;
+    AccelSummary grid;
+};
+
 class RingRenderer {
   public:
     /// Packs the scene, checks that it fits the machine's PEs, builds the kernels and takes the device memory.
@@ -40,8 +46,7 @@ class RingRenderer {
 
     Session& session_;
     RingSettings settings_;  // lanes and group size chosen
-    PackedJob job_;
-    AccelSummary accel_;
+    RingJob job_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;
     Communication communication_;

@@ -5,7 +5,8 @@ namespace raya {
 double trace_seconds(const RingResult& result) {
     double ns = 0;
     for (const LabelSummary& command : result.commands)
-        if (command.label == kTracePass || command.label == kSupersamplePass) ns += static_cast<double>(command.total_ns);
+        if (command.label == kTracePass || command.label == kSupersamplePass)
+            ns += static_cast<double>(command.total_ns);
     return ns > 0 ? ns * 1e-9 : result.render_s;
 }
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include "host/error.hpp"
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/triangulate.hpp"
+#include "host/scene/word_records.hpp"
 
 namespace raya {
 namespace {
@@ -42,7 +42,7 @@ void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
     const bool corners = settings.sampling == Sampling::kCorners;
     const auto samples = [&](std::uint32_t pixels) { return corners ? std::max(1.0, pixels - 1.0) : double(pixels); };
     const auto first = [&](std::uint32_t pixels) { return corners ? (pixels == 1 ? 0.5 : 0.0) : 0.5; };
-    const double columns = samples(settings.mapping.width), rows = samples(settings.mapping.height);
+    const double columns = samples(settings.image.width), rows = samples(settings.image.height);
     const Vec3 gaze = (view.at - view.from).normalized();
     const Vec3 right = gaze.cross(view.up).normalized(), top = right.cross(gaze);
     const double half_height = std::tan(view.angle_degrees * std::numbers::pi / 360);
@@ -51,8 +51,8 @@ void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
     store(job.column_step, step * right, settings.format);
     store(job.row_step, -step * top, settings.format);
     store(job.corner,
-          gaze + (first(settings.mapping.width) - columns / 2) * step * right -
-              (first(settings.mapping.height) - rows / 2) * step * top,
+          gaze + (first(settings.image.width) - columns / 2) * step * right -
+              (first(settings.image.height) - rows / 2) * step * top,
           settings.format);
 }
 
@@ -155,9 +155,23 @@ constexpr std::size_t kMostWords = std::size_t{1} << 30;
 
 }  // namespace
 
+PackedJob::PackedJob(const raya_job& header, std::vector<std::uint32_t> words, bool has_patches)
+    : header_(header), words_(std::move(words)), has_patches_(has_patches) {
+    set_header(header);
+}
+
+void PackedJob::set_header(const raya_job& header) {
+    header_ = header;
+    put_record(words_, 0, header);
+}
+
+void PackedJob::append(const std::vector<std::uint32_t>& words) {
+    words_.insert(words_.end(), words.begin(), words.end());
+}
+
 PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     raya_job job{};
-    job.mapping = settings.mapping;
+    job.mapping = {settings.image.width, settings.image.height, 1, 0, RAYA_FOLD_CYCLIC};
     job.bounces = settings.bounces;
     std::copy(settings.cycles.begin(), settings.cycles.end(), job.cycles);
     pack_camera(job, scene.view, settings);
@@ -166,7 +180,7 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     job.extent = round_to_format(scene_extent(scene), settings.format);
 
     Words words(settings.format);
-    words.resize(sizeof(raya_job) / sizeof(std::uint32_t));
+    words.resize(kWordsOf<raya_job>);
     Words surface_at(settings.format);
     for (const Surface& s : scene.surfaces) {
         put_index(surface_at, words.size());
@@ -204,14 +218,9 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
         throw UserError(
             fmt::format("{}: packs to {} words, more than 32-bit word numbers reach", scene.name, words.size()));
 
-    PackedJob packed;
-    packed.has_polygons = !faces.empty();
-    packed.has_patches =
+    const bool has_patches =
         std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });
-    packed.has_cones = !scene.cones.empty();
-    std::memcpy(words.data(), &job, sizeof job);
-    packed.words = std::move(words);
-    return packed;
+    return {job, std::move(words), has_patches};
 }
 
 }  // namespace raya

@@ -1,9 +1,10 @@
-// Packs a scene, a view and a mapping into the words that the bus broadcasts and every PE holds (kernels/shared/job.h).
+// Packs a scene and a view into the words that the bus broadcasts and every PE holds (kernels/shared/job.h).
 #pragma once
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "host/machine/image_size.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/job.h"
@@ -13,22 +14,39 @@ namespace raya {
 /// Where in a pixel its primary ray goes through (kernels/README.md, Camera).
 enum class Sampling { kCentres, kCorners };
 
-/// What a job needs beside its scene. The image is mapping.width x mapping.height pixels.
+/// What a job needs beside its scene.
 struct JobSettings {
-    raya_mapping mapping{};
+    ImageSize image;
     Sampling sampling = Sampling::kCentres;
     std::uint32_t bounces = 8;
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
     NumberFormat format{};                            // of every number in the job
 };
 
-struct PackedJob {
-    std::vector<std::uint32_t> words;
-    bool has_polygons = false, has_patches = false, has_cones = false;
+/// A job's words, and the header with which they open.
+class PackedJob {
+  public:
+    /// `words` open with room for the header.
+    PackedJob(const raya_job& header, std::vector<std::uint32_t> words, bool has_patches);
+
+    const raya_job& header() const { return header_; }
+    const std::vector<std::uint32_t>& words() const { return words_; }
+    bool has_polygons() const { return header_.objects.polygons > 0; }
+    bool has_patches() const { return has_patches_; }
+    bool has_cones() const { return header_.objects.cones > 0; }
+
+    void set_header(const raya_job& header);
+    void append(const std::vector<std::uint32_t>& words);
+
+  private:
+    raya_job header_;
+    std::vector<std::uint32_t> words_;
+    bool has_patches_;
 };
 
-/// Numbers are rounded from double to the format once each. Patches of more than three vertices are cut into triangles,
-/// each of which counts as a polygon of its own. Throws UserError for a scene of more than 2^30 words.
+/// One PE has all pixels: whose machine has more sets the header's mapping. Numbers are rounded from double to the
+/// format once each. Patches of more than three vertices are cut into triangles, each of which counts as a polygon of
+/// its own. Throws UserError for a scene of more than 2^30 words.
 PackedJob pack_job(const Scene& scene, const JobSettings& settings);
 
 }  // namespace raya

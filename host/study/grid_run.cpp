@@ -26,7 +26,8 @@ RingSettings ring_settings(const Divisions& divisions, const GridSettings& setti
 }
 
 std::uint64_t copies_of(const Scene& scene, const RingSettings& ring, const Divisions& divisions) {
-    const JobSettings job{ring.mapping, ring.sampling, ring.bounces, cycles_of_events(), ring.format};
+    const JobSettings job{
+        {ring.mapping.width, ring.mapping.height}, ring.sampling, ring.bounces, cycles_of_events(), ring.format};
     return partition(pack_job(scene, job), ring.format, divisions).copies();
 }
 

@@ -31,8 +31,8 @@ Costs render_costs(Session& session, const LabelledScene& scene, std::uint32_t s
 
 NumberFormat format_for(const Scene& scene) {
     const Machine& spa = machine_named("spa");
-    const JobSettings smallest{cyclic(1, 0), Sampling::kCentres, spa.bounces, cycles_of_events(), spa.format};
-    return 4 * pack_job(scene, smallest).words.size() <= spa.pe_memory_bytes.value() ? spa.format : NumberFormat{};
+    const JobSettings smallest{{1, 1}, Sampling::kCentres, spa.bounces, cycles_of_events(), spa.format};
+    return 4 * pack_job(scene, smallest).words().size() <= spa.pe_memory_bytes.value() ? spa.format : NumberFormat{};
 }
 
 const Costs& Laboratory::costs(const LabelledScene& scene, std::uint32_t size, AntialiasMethod method) {

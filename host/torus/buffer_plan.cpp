@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "host/error.hpp"
+#include "host/scene/word_records.hpp"
 #include "host/torus/topology.hpp"
 #include "kernels/shared/packet.h"
 
@@ -51,14 +51,14 @@ std::uint32_t fullest_node(const NodeMemories& memories) {
 
 // "node 219 (voxel 3, 3, 3 with 2310 objects)"
 std::string node_text(const NodeMemories& memories, std::uint32_t number) {
-    const std::uint32_t* const words = memories.words.data() + memories.starts[number];
-    raya_node node;
-    std::memcpy(&node, words, sizeof node);
+    const std::size_t start = memories.starts[number];
+    const auto node = record_at<raya_node>(memories.words, start);
     std::uint64_t objects = node.job.objects.planes;
     for (std::uint32_t local = 0; local < node.voxels; ++local) {
-        raya_voxel_memory voxel;
-        std::memcpy(&voxel, words + node.voxels_at + local * (sizeof voxel / sizeof *words), sizeof voxel);
-        objects += voxel.objects.spheres + voxel.objects.polygons + voxel.objects.cones;
+        const raya_objects voxel =
+            record_at<raya_voxel_memory>(memories.words, start + node.voxels_at + local * kWordsOf<raya_voxel_memory>)
+                .objects;
+        objects += voxel.spheres + voxel.polygons + voxel.cones;
     }
     std::string voxels = fmt::format("{} voxels", node.voxels);
     if (node.voxels == 1) {

@@ -20,7 +20,7 @@ std::size_t own_words(const KernelOptions& options) { return options.group_size 
 KernelOptions where_words_fit(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
     const std::size_t most_shared = std::max<std::size_t>(RAYA_COUNT_WORDS, RAYA_ROUTE_WORDS);
     const std::size_t words = most_shared + own_words(options) + largest_node(memories);
-    options.words_local = options.words_local && sizeof(cl_uint) * words <= device.local_memory_bytes;
+    options.words_local = options.words_local && sizeof(std::uint32_t) * words <= device.local_memory_bytes;
     return options;
 }
 

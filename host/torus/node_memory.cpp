@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "host/error.hpp"
+#include "host/scene/word_records.hpp"
 
 namespace raya {
 namespace {
@@ -17,18 +17,15 @@ namespace {
 using Words = std::vector<std::uint32_t>;
 using Numbers = std::span<const std::uint32_t>;  // of objects in the whole scene, ascending
 
-template <class T>
-constexpr std::size_t kWordsOf = sizeof(T) / sizeof(std::uint32_t);
-
 // Of all nodes together: 4 GB, as for a job.
 constexpr std::uint64_t kMostWords = std::uint64_t{1} << 30;
 
 // Where a job keeps its parts.
 class JobParts {
   public:
-    explicit JobParts(const PackedJob& job) : words_(job.words) { std::memcpy(&header, words_.data(), sizeof header); }
+    explicit JobParts(const PackedJob& job) : header(job.header()), words_(job.words()) {}
 
-    raya_job header;
+    const raya_job header;
 
     const std::uint32_t* at(std::uint32_t word) const { return words_.data() + word; }
     std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
@@ -115,7 +112,7 @@ class NodePacker {
         header.job.objects.planes_at = here();
         for (std::uint32_t i = 0; i < header.job.objects.planes; ++i) append_object(job_.plane(i), RAYA_PLANE_WORDS);
         const std::uint64_t objects = append_voxels(header);
-        std::memcpy(to.data() + start_, &header, sizeof header);
+        put_record(to, start_, header);
         return objects;
     }
 
@@ -165,8 +162,7 @@ class NodePacker {
         for (std::uint32_t local = 0; local < header.voxels; ++local) {
             const VoxelLists lists = lists_of_local(header.number, local);
             const raya_voxel_memory voxel = append_voxel(lists, header.job.objects);
-            std::memcpy(to_->data() + start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, &voxel,
-                        sizeof voxel);
+            put_record(*to_, start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, voxel);
             objects += lists.all.size();
         }
         return objects;

@@ -3,21 +3,17 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <cstring>
 
 #include "host/error.hpp"
 #include "host/machine/t805.hpp"
+#include "host/scene/word_records.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/windows.hpp"
 
 namespace raya {
 
 JobSettings job_settings(const TorusSettings& s) {
-    raya_mapping pixels{};  // rows of the image in turn: the job's header says how large it is
-    pixels.width = s.width;
-    pixels.height = s.height;
-    pixels.pes = 1;
-    return {pixels, s.sampling, s.bounces, t805_cycles(), s.format};
+    return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(), s.format};
 }
 
 TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
@@ -48,18 +44,16 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job, const
             .exact_fma = s.kernels.exact_arithmetic,
             .words_local = s.kernels.local_words,
             .filter = s.kernels.filter && !scene.spheres.empty() && sphere_filter_holds(s.format, scene_extent(scene)),
-            .polygons = job.has_polygons,
-            .patches = job.has_patches,
-            .cones = job.has_cones};
+            .polygons = job.has_polygons(),
+            .patches = job.has_patches(),
+            .cones = job.has_cones()};
 }
 
 void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob& job, const Partition& partition) {
-    raya_job header;
-    std::memcpy(&header, job.words.data(), sizeof header);
-    const std::vector<PixelWindow> windows = pixel_windows(header, partition.grid, s.torus, s.format);
+    const std::vector<PixelWindow> windows = pixel_windows(job.header(), partition.grid, s.torus, s.format);
     for (std::size_t node = 0; node < windows.size(); ++node)
-        std::memcpy(&memories.words[memories.starts[node] + offsetof(raya_node, window) / 4], &windows[node],
-                    sizeof windows[node]);
+        put_record(memories.words, memories.starts[node] + offsetof(raya_node, window) / sizeof(std::uint32_t),
+                   windows[node]);
 }
 
 }  // namespace raya

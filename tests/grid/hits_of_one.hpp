@@ -1,7 +1,6 @@
 // Hits of a scene's objects, each alone, by rays aimed at them.
 #pragma once
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "host/scene/packer.hpp"
@@ -13,15 +12,9 @@ namespace raya {
 
 inline PackedJob job_in(const Scene& scene, const NumberFormat& format) {
     JobSettings settings;
-    settings.mapping = {16, 16, 1, 0, RAYA_FOLD_CYCLIC};
+    settings.image = {16, 16};
     settings.format = format;
     return pack_job(scene, settings);
-}
-
-inline raya_job header_of(const PackedJob& job) {
-    raya_job header;
-    std::memcpy(&header, job.words.data(), sizeof header);
-    return header;
 }
 
 /// A hit as the kernel computed it, and where it is exactly.
@@ -54,7 +47,7 @@ inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBound
 }
 
 inline std::vector<FoundHit> hits_of_one(KernelRunner& runner, const PackedJob& job, const AimedRays& aimed) {
-    const auto job_buffer = runner.filled("job", job.words);
+    const auto job_buffer = runner.filled("job", job.words());
     const auto rays = runner.filled("rays", ray_words(aimed.rays));
     const auto objects = runner.filled("objects", aimed.objects);
     auto distances = runner.constant<float>("distances", aimed.rays.size(), 0);

@@ -25,7 +25,7 @@ inline std::size_t lists_with(const Partition& p, std::uint32_t object) {
 
 /// Numbers of the finite objects.
 inline std::vector<std::uint32_t> finite_numbers(const PackedJob& job) {
-    const raya_objects all = header_of(job).objects;
+    const raya_objects all = job.header().objects;
     std::vector<std::uint32_t> numbers;
     for (std::uint32_t i = 0; i < all.spheres + all.planes + all.polygons + all.cones; ++i)
         if (i < all.spheres || i >= all.spheres + all.planes) numbers.push_back(i);

@@ -3,40 +3,37 @@
 #include <cstring>
 
 #include "host/grid/accel.hpp"
+#include "host/scene/word_records.hpp"
 #include "tests/grid/partition_lists.hpp"
 
 namespace raya {
 namespace {
 
-raya_grid_words grid_of(const PackedJob& job) {
-    raya_grid_words grid;
-    std::memcpy(&grid, &job.words[header_of(job).grid_at], sizeof grid);
-    return grid;
-}
+raya_grid_words grid_of(const PackedJob& job) { return record_at<raya_grid_words>(job.words(), job.header().grid_at); }
 
 /// Numbers of the objects that the voxel word leads to. Checks that every sphere's row holds its words.
 std::vector<std::uint32_t> objects_behind(const PackedJob& job, std::uint32_t word) {
     const raya_grid_words grid = grid_of(job);
-    const raya_objects objects = header_of(job).objects;
+    const raya_objects objects = job.header().objects;
     std::vector<std::uint32_t> numbers;
     while (word != 0) {
         std::uint32_t row = word & RAYA_ROW_NUMBER;
         REQUIRE(row > 0);
         for (std::uint32_t left = word & RAYA_ROWS_LEFT; left > 0; left -= RAYA_ONE_ROW, ++row) {
-            const std::uint32_t number = job.words[grid.numbers_at + row];
+            const std::uint32_t number = job.words()[grid.numbers_at + row];
             REQUIRE(number < objects.spheres);
             for (std::uint32_t i = 0; i < RAYA_ROW_WORDS; ++i)
-                REQUIRE(job.words[grid.rows_at + RAYA_ROW_WORDS * row + i] ==
-                        job.words[objects.spheres_at + RAYA_SPHERE_WORDS * number + i]);
+                REQUIRE(job.words()[grid.rows_at + RAYA_ROW_WORDS * row + i] ==
+                        job.words()[objects.spheres_at + RAYA_SPHERE_WORDS * number + i]);
             numbers.push_back(number);
         }
         if (!(word & RAYA_LINKED)) return numbers;
-        const std::uint32_t linked = job.words[grid.numbers_at + row];
+        const std::uint32_t linked = job.words()[grid.numbers_at + row];
         if (linked != RAYA_NO_OBJECT_HERE) {
             REQUIRE(linked >= objects.spheres + objects.planes);
             numbers.push_back(linked);
         }
-        word = job.words[grid.rows_at + RAYA_ROW_WORDS * row + RAYA_ROW_NEXT];
+        word = job.words()[grid.rows_at + RAYA_ROW_WORDS * row + RAYA_ROW_NEXT];
     }
     return numbers;
 }
@@ -46,7 +43,7 @@ void check_lists(const PackedJob& job, const Partition& p) {
     CHECK(grid.rows_at % 4 == 0);
     for (std::size_t v = 0; v + 1 < p.starts.size(); ++v) {
         const std::vector<std::uint32_t> expected(p.objects.begin() + p.starts[v], p.objects.begin() + p.starts[v + 1]);
-        if (objects_behind(job, job.words[grid.voxels_at + v]) != expected) {
+        if (objects_behind(job, job.words()[grid.voxels_at + v]) != expected) {
             CAPTURE(v);
             FAIL("another list");
         }
@@ -69,7 +66,7 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words s
         SplitMix random(seed);
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
         PackedJob job = job_in(mixed_scene(seed), format);
-        const std::vector<std::uint32_t> before = job.words;
+        const std::vector<std::uint32_t> before = job.words();
         const Divisions divisions = random_divisions(random);
         const std::vector<std::uint32_t> finite = finite_numbers(job);
         std::vector<std::uint32_t> apart;
@@ -80,17 +77,17 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words s
         CAPTURE(seed, divisions, apart);
         check_lists(job, p);
         const raya_grid_words grid = grid_of(job);
-        CHECK(std::vector<std::uint32_t>(job.words.begin() + grid.apart_at,
-                                         job.words.begin() + grid.apart_at + grid.apart) == apart);
+        CHECK(std::vector<std::uint32_t>(job.words().begin() + grid.apart_at,
+                                         job.words().begin() + grid.apart_at + grid.apart) == apart);
         CHECK(std::memcmp(&grid.grid, &p.grid, sizeof p.grid) == 0);
         CHECK(summary.copies == p.copies());
         CHECK(summary.apart == apart.size());
         CHECK(summary.divisions == divisions);
-        CHECK(job.words.size() - header_of(job).grid_at == summary.words);
-        raya_job unlinked = header_of(job);
+        CHECK(job.words().size() - job.header().grid_at == summary.words);
+        raya_job unlinked = job.header();
         unlinked.grid_at = 0;
-        std::memcpy(job.words.data(), &unlinked, sizeof unlinked);
-        CHECK(std::equal(before.begin(), before.end(), job.words.begin()));
+        job.set_header(unlinked);
+        CHECK(std::equal(before.begin(), before.end(), job.words().begin()));
     }
 }
 

@@ -226,7 +226,7 @@ TEST_CASE("the reach is twice the scene's extent; with planes, on which rays sta
     REQUIRE(!scene.planes.empty());
     for (const std::string format : {"fp32", "e6m15", "e8m12"}) {
         CAPTURE(format);
-        const double extent = header_of(job_in(scene, parse_format(format))).extent;
+        const double extent = job_in(scene, parse_format(format)).header().extent;
         const double far = partition_of(scene, format, {2, 2, 2}).grid.reach / extent;
         CHECK(far == std::exp2(std::round(std::log2(far))));
         CHECK(far >= (format == "fp32" ? 4 : 2));
@@ -237,7 +237,7 @@ TEST_CASE("the reach is twice the scene's extent; with planes, on which rays sta
     scene.planes.clear();
     for (const std::string format : {"fp32", "e6m15", "e8m12"})
         CHECK(partition_of(scene, format, {2, 2, 2}).grid.reach ==
-              2 * header_of(job_in(scene, parse_format(format))).extent);
+              2 * job_in(scene, parse_format(format)).header().extent);
 }
 
 TEST_CASE("divisions that cannot be are refused") {

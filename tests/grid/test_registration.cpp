@@ -41,7 +41,7 @@ std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scen
                        int turns) {
     const PackedJob job = job_in(scene, format);
     const Partition p = partition(job, format, random_divisions(random));
-    const double error = walk_error(p.grid), extent = header_of(job).extent;
+    const double error = walk_error(p.grid), extent = job.header().extent;
     const RayBounds bounds{format, std::min(2 * extent, double{p.grid.reach})};
     const std::vector<FoundHit> hits = hits_of_one(runner, job, aim_at_all(random, scene, bounds, turns));
     const HitRegions regions(job, format);

@@ -1,8 +1,8 @@
 // The walk as the ring's lanes take it, against the walk of one step at a time: the same voxels at the same t, bit for
 // bit, up to where the ray leaves the box.
 #include <catch2/catch.hpp>
-#include <cstring>
 
+#include "host/scene/word_records.hpp"
 #include "tests/grid/random_walks.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/kernels/probe.hpp"
@@ -20,8 +20,8 @@ struct Walks {
 std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
 
 std::vector<std::uint32_t> words_of(const raya_grid& grid) {
-    std::vector<std::uint32_t> words(sizeof grid / 4);
-    std::memcpy(words.data(), &grid, sizeof grid);
+    std::vector<std::uint32_t> words(kWordsOf<raya_grid>);
+    put_record(words, 0, grid);
     return words;
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <set>
 
+#include "host/scene/word_records.hpp"
 #include "tests/grid/random_walks.hpp"
 #include "tests/grid/reference_walk.hpp"
 #include "tests/kernels/kernel_runner.hpp"
@@ -24,8 +24,8 @@ struct Walks {
 };
 
 std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
-    std::vector<std::uint32_t> words(sizeof grid / 4);
-    std::memcpy(words.data(), &grid, sizeof grid);
+    std::vector<std::uint32_t> words(kWordsOf<raya_grid>);
+    put_record(words, 0, grid);
     return words;
 }
 

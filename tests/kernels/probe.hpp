@@ -12,11 +12,11 @@
 
 namespace raya {
 
-/// The words of a scene; camera, mapping and cycles do not matter to the pieces.
+/// The words of a scene; camera, image and cycles do not matter to the pieces.
 inline std::vector<std::uint32_t> job_words(const Scene& scene) {
     JobSettings settings;
-    settings.mapping = {16, 16, 1, 0, RAYA_FOLD_CYCLIC};
-    return pack_job(scene, settings).words;
+    settings.image = {16, 16};
+    return pack_job(scene, settings).words();
 }
 
 /// Patches of more than three corners are several polygons of a job: the number that the scene gives to each of a job's

@@ -12,6 +12,7 @@
 #include "host/ring/filter.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/route.hpp"
+#include "host/scene/word_records.hpp"
 #include "kernels/shared/job.h"
 #include "tests/ring/small_mapping.hpp"
 
@@ -66,8 +67,8 @@ class Runner {
         if (groups == 0) return before;
         raya_job job{};
         job.mapping = l.m;
-        std::vector<std::uint32_t> words(sizeof(job) / 4);
-        std::memcpy(words.data(), &job, sizeof job);
+        std::vector<std::uint32_t> words(kWordsOf<raya_job>);
+        put_record(words, 0, job);
         const Buffer<std::uint32_t> broadcast = filled("job", words);
         const Buffer<float> arrived = filled("arrived", before.arrived);
         Buffer<float> pixels = filled("pixels", before.pixels);

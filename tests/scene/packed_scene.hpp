@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
+#include "host/scene/word_records.hpp"
 
 namespace raya {
 
 class PackedScene {
   public:
-    explicit PackedScene(std::vector<std::uint32_t> words) : words_(std::move(words)), reads_(words_.size(), 0) {
-        std::memcpy(&job_, words_.data(), sizeof job_);
-        for (std::size_t i = 0; i < sizeof job_ / 4; ++i) ++reads_[i];
+    explicit PackedScene(std::vector<std::uint32_t> words)
+        : words_(std::move(words)), reads_(words_.size(), 0), job_(record_at<raya_job>(words_, 0)) {
+        for (std::size_t i = 0; i < kWordsOf<raya_job>; ++i) ++reads_[i];
     }
 
     const raya_job& job() const { return job_; }
@@ -55,7 +55,7 @@ class PackedScene {
   private:
     std::vector<std::uint32_t> words_;
     std::vector<int> reads_;
-    raya_job job_{};
+    raya_job job_;
 };
 
 }  // namespace raya

@@ -1,5 +1,6 @@
 // Jobs read back: every word is accounted for and says what the scene says, to fp32.
 #include <algorithm>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/triangulate.hpp"
+#include "host/scene/word_records.hpp"
 #include "tests/paths.h"
 #include "tests/reference/reference.hpp"
 #include "tests/scene/fp32.hpp"
@@ -175,9 +177,14 @@ class JobCheck {
     std::vector<std::uint32_t> surface_at_;
 };
 
+template <class Record>
+WordsOf<Record> words_of(const Record& record) {
+    return std::bit_cast<WordsOf<Record>>(record);
+}
+
 JobSettings settings_for(std::uint32_t width, std::uint32_t height, Sampling sampling = Sampling::kCentres) {
     JobSettings settings;
-    settings.mapping = {width, height, 5, 0, RAYA_FOLD_BLOCK};
+    settings.image = {width, height};
     settings.sampling = sampling;
     return settings;
 }
@@ -205,11 +212,11 @@ TEST_CASE("the jobs of all scenes decode back to them, and every word belongs to
         CAPTURE(entry.path().filename().string());
         const Scene scene = read_nff(entry.path());
         const PackedJob packed = pack_job(scene, settings_for(64, 48));
-        JobCheck(scene, packed.words).run();
+        JobCheck(scene, packed.words()).run();
         const auto is_patch = [](const Polygon& p) { return !p.normals.empty(); };
-        CHECK(packed.has_polygons == !scene.polygons.empty());
-        CHECK(packed.has_patches == std::any_of(scene.polygons.begin(), scene.polygons.end(), is_patch));
-        CHECK(packed.has_cones == !scene.cones.empty());
+        CHECK(packed.has_polygons() == !scene.polygons.empty());
+        CHECK(packed.has_patches() == std::any_of(scene.polygons.begin(), scene.polygons.end(), is_patch));
+        CHECK(packed.has_cones() == !scene.cones.empty());
     }
     CHECK(scenes >= 6);
 }
@@ -217,24 +224,23 @@ TEST_CASE("the jobs of all scenes decode back to them, and every word belongs to
 TEST_CASE("patches become triangles, polygons stay whole", "[packer]") {
     const Scene scene = patch_scene();
     const PackedJob packed = pack_job(scene, settings_for(8, 8));
-    JobCheck(scene, packed.words).run();
-    CHECK(PackedScene(packed.words).job().objects.polygons == 2 + 1 + 1);
-    CHECK((packed.has_polygons && packed.has_patches && !packed.has_cones));
+    JobCheck(scene, packed.words()).run();
+    CHECK(PackedScene(packed.words()).job().objects.polygons == 2 + 1 + 1);
+    CHECK((packed.has_polygons() && packed.has_patches() && !packed.has_cones()));
     const std::size_t words = sizeof(raya_job) / 4 + 2 * RAYA_SURFACE_WORDS + 4 * RAYA_POLYGON_WORDS +
                               (3 + 3 + 3 + 4) * RAYA_EDGE_WORDS + 3 * RAYA_PATCH_WORDS;
-    CHECK(packed.words.size() == words);
+    CHECK(packed.words().size() == words);
 }
 
 TEST_CASE("the header holds settings, background and sizes", "[packer]") {
     Scene scene = patch_scene();
     scene.background = {0.1, 0.2, 0.3};
     JobSettings settings = settings_for(32, 24);
-    settings.mapping.parameter = 7;
     settings.bounces = 3;
     for (std::uint32_t i = 0; i < RAYA_EVENTS; ++i) settings.cycles[i] = 100 + i;
-    raya_job job = PackedScene(pack_job(scene, settings).words).job();
-    CHECK((job.mapping.width == 32 && job.mapping.height == 24 && job.mapping.pes == 5));
-    CHECK((job.mapping.parameter == 7 && job.mapping.kind == RAYA_FOLD_BLOCK));
+    raya_job job = PackedScene(pack_job(scene, settings).words()).job();
+    CHECK((job.mapping.width == 32 && job.mapping.height == 24 && job.mapping.pes == 1));
+    CHECK((job.mapping.parameter == 0 && job.mapping.kind == RAYA_FOLD_CYCLIC));
     CHECK(job.bounces == 3);
     CHECK(std::equal(settings.cycles.begin(), settings.cycles.end(), job.cycles));
     CHECK(Vec3(job.eye[0], job.eye[1], job.eye[2]) == Vec3(0, 0, -5));
@@ -243,9 +249,35 @@ TEST_CASE("the header holds settings, background and sizes", "[packer]") {
     CHECK(job.extent == 5);   // the eye is farthest out
     scene.lights = {{{1, 2, 3}, {}}, {{4, 5, 6}, Colour(0.1, 0.2, 0.3)}};
     scene.spheres = {{{-8, 0, 0}, -2, 0}};
-    job = PackedScene(pack_job(scene, settings).words).job();
+    job = PackedScene(pack_job(scene, settings).words()).job();
     CHECK(job.ambient == static_cast<float>(std::sqrt(2.0) / 4));
     CHECK(job.extent == 10);
+}
+
+TEST_CASE("a job's header is that of its words, when it is set and when words are appended", "[packer]") {
+    PackedJob job = pack_job(patch_scene(), settings_for(8, 6));
+    const std::vector<std::uint32_t> before = job.words();
+    CHECK(words_of(job.header()) == words_of(PackedScene(before).job()));
+    raya_job header = job.header();
+    header.mapping = {8, 6, 5, 7, RAYA_FOLD_BLOCK};
+    job.set_header(header);
+    job.append({11, 12, 13});
+    CHECK(words_of(job.header()) == words_of(header));
+    CHECK(words_of(PackedScene(job.words()).job()) == words_of(header));
+    const auto first = static_cast<std::ptrdiff_t>(kWordsOf<raya_job>);
+    REQUIRE(job.words().size() == before.size() + 3);
+    CHECK(std::equal(before.begin() + first, before.end(), job.words().begin() + first));
+    CHECK(std::vector<std::uint32_t>(job.words().end() - 3, job.words().end()) ==
+          std::vector<std::uint32_t>{11, 12, 13});
+}
+
+TEST_CASE("records lie among words where they were put, and their neighbours stay", "[packer]") {
+    std::vector<std::uint32_t> words = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+    const raya_mapping mapping{20, 30, 40, 50, RAYA_TILES};
+    put_record(words, 2, mapping);
+    CHECK(words == std::vector<std::uint32_t>{1, 2, 20, 30, 40, 50, RAYA_TILES, 8, 9});
+    CHECK(words_of(record_at<raya_mapping>(words, 2)) == words_of(mapping));
+    CHECK(record_at<raya_mapping>(words, 4).width == 40);
 }
 
 TEST_CASE("corner and steps give the reference's primary rays", "[packer]") {
@@ -255,7 +287,7 @@ TEST_CASE("corner and steps give the reference's primary rays", "[packer]") {
         for (const auto& [width, height] :
              {std::pair{64u, 48u}, std::pair{1u, 7u}, std::pair{9u, 1u}, std::pair{1u, 1u}}) {
             const Sampling sampling = corners ? Sampling::kCorners : Sampling::kCentres;
-            const raya_job job = PackedScene(pack_job(scene, settings_for(width, height, sampling)).words).job();
+            const raya_job job = PackedScene(pack_job(scene, settings_for(width, height, sampling)).words()).job();
             reference::Options options;
             options.width = static_cast<int>(width);
             options.height = static_cast<int>(height);

@@ -3,10 +3,10 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <set>
 #include <vector>
 
+#include "host/scene/word_records.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
@@ -15,15 +15,9 @@
 
 namespace raya {
 
-inline raya_job job_header(const PackedJob& job) {
-    raya_job header;
-    std::memcpy(&header, job.words.data(), sizeof header);
-    return header;
-}
-
 inline PackedJob pack(const Scene& scene) {
     JobSettings settings;
-    settings.mapping = {16, 16, 1, 0, RAYA_FOLD_CYCLIC};
+    settings.image = {16, 16};
     return pack_job(scene, settings);
 }
 
@@ -71,7 +65,7 @@ inline Partition partition_of(const Divisions& divisions, const std::vector<std:
 
 /// The numbers of all objects of a job but its planes.
 inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
-    const raya_objects o = job_header(job).objects;
+    const raya_objects o = job.header().objects;
     std::vector<std::uint32_t> finite;
     for (std::uint32_t i = 0; i < o.spheres + o.planes + o.polygons + o.cones; ++i)
         if (i < o.spheres || i >= o.spheres + o.planes) finite.push_back(i);
@@ -120,10 +114,7 @@ class NodeReader {
   private:
     template <class T>
     T take(std::size_t at) {
-        const std::vector<std::uint32_t> words = section(at, sizeof(T) / 4);
-        T value;
-        std::memcpy(&value, words.data(), sizeof value);
-        return value;
+        return record_at<T>(section(at, kWordsOf<T>), 0);
     }
 
     std::vector<std::uint32_t> words_;

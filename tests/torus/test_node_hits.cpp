@@ -87,8 +87,8 @@ std::size_t differences(const VoxelHits& own, const VoxelHits& theirs) {
 
 // What the kernels find with the job's own words, as one voxel of one node with everything.
 VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector<float>& rays) {
-    const ProbedHits hits = closest_hits(runner, job.words, rays);
-    const ProbedPlaces probed = find_places(runner, job.words, rays);
+    const ProbedHits hits = closest_hits(runner, job.words(), rays);
+    const ProbedPlaces probed = find_places(runner, job.words(), rays);
     std::vector<float> places;
     for (std::size_t i = 0; i < hits.objects.size(); ++i)
         for (const auto which : {ProbedPlaces::kGeometric, ProbedPlaces::kNormal, ProbedPlaces::kColour})

@@ -16,7 +16,7 @@ using Words = std::vector<std::uint32_t>;
 // One node beside the job: every word of an object, and all that it leads to.
 class NodeCheck {
   public:
-    NodeCheck(const PackedJob& job, NodeReader& node) : job_(job), header_(job_header(job)), node_(node) {}
+    NodeCheck(const PackedJob& job, NodeReader& node) : job_(job), header_(job.header()), node_(node) {}
 
     Words job_section(std::size_t at, std::size_t count) const {
         const auto first = job_.words.begin() + static_cast<std::ptrdiff_t>(at);
@@ -129,7 +129,7 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
 
 // As many as there are in the fullest node, counted from the lists.
 std::uint64_t most_objects(const PackedJob& job, const Partition& p, const raya_torus& torus) {
-    std::vector<std::uint64_t> held(raya_nodes(torus), job_header(job).objects.planes);
+    std::vector<std::uint64_t> held(raya_nodes(torus), job.header().objects.planes);
     for (std::uint32_t voxel = 0; voxel < raya_voxels(p.grid); ++voxel)
         held[raya_node_of_voxel(torus, p.grid, voxel)] += p.starts[voxel + 1] - p.starts[voxel];
     return *std::max_element(held.begin(), held.end());

@@ -99,10 +99,10 @@ Camera random_camera(SplitMix& random, const raya_grid& grid, const NumberFormat
     scene.view.up = random_direction(random);
     scene.view.angle_degrees = angle;
     JobSettings settings;
-    settings.mapping = {1 + random_below(random, 40), 1 + random_below(random, 30), 1, 0, RAYA_FOLD_CYCLIC};
+    settings.image = {1 + random_below(random, 40), 1 + random_below(random, 30)};
     settings.sampling = random.next() % 2 ? Sampling::kCentres : Sampling::kCorners;
     settings.format = format;
-    return {job_header(pack_job(scene, settings)), format};
+    return {pack_job(scene, settings).header(), format};
 }
 
 }  // namespace
