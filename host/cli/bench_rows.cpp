@@ -11,6 +11,7 @@
 #include "host/report/render_report.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
+#include "host/ring/schedule.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
 

@@ -18,7 +18,7 @@ std::string odd_value(const std::string& value, bool is_whole);
 
 /// Adds an option that fills `value` and refuses odd values. Whole numbers are the unsigned types.
 template <class Value>
-CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help) {
+CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "") {
     CLI::Option* option = command.add_option(name, value, help);
     return option->check([](const std::string& text) { return odd_value(text, kIsWhole<Value>); });
 }

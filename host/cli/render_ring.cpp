@@ -6,6 +6,7 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/ring/ring_trace.hpp"
 #include "host/ring/ring_work.hpp"
+#include "host/ring/schedule.hpp"
 #include "host/scene/nff_reader.hpp"
 
 namespace raya {

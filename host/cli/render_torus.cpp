@@ -8,6 +8,9 @@
 #include "host/files/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/torus/packet_trace.hpp"
+#include "host/torus/queue_search.hpp"
+#include "host/torus/standstill.hpp"
+#include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "host/torus/torus_time.hpp"
 #include "host/torus/torus_trace.hpp"
@@ -28,6 +31,16 @@ TorusResult render_with_progress(TorusRenderer& renderer, bool wanted, PacketTra
     ProgressBar bar(wanted);
     return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{}, packet_sink,
                            step_sink, packets ? 1 : TorusTrace::kPacketsEvery);
+}
+
+// Where the machine stands still, a queue is looked for that is long enough.
+TorusResult render_to_its_end(TorusRenderer& renderer, bool wanted, PacketTrace* packets, TorusTrace* trace) {
+    try {
+        return render_with_progress(renderer, wanted, packets, trace);
+    } catch (const Standstill& still) {
+        const QueueFound found = longer_queue(still.figures.queue, renderer.queue_trial());
+        throw Standstill(still.figures, queue_remedy(found));
+    }
 }
 
 TorusReport torus_report(const TorusSettings& settings, const TorusResult& result) {
@@ -90,7 +103,7 @@ void render_on_torus(const RenderCommand& command) {
     if (!command.torus.packets.empty()) packets.emplace();
     if (watch.traces()) trace.emplace(settings.torus);
     const TorusResult result =
-        render_with_progress(renderer, !command.quiet, packets ? &*packets : nullptr, trace ? &*trace : nullptr);
+        render_to_its_end(renderer, !command.quiet, packets ? &*packets : nullptr, trace ? &*trace : nullptr);
 
     RenderReport report = make_report(command, settings, session.device(), result);
     watch.steps().during("write images", [&] {

@@ -11,8 +11,7 @@ namespace {
 
 using Sides = std::array<std::uint32_t, 3>;
 
-constexpr Sides kNodes = {4, 4, 4};                            // Yoshitani & Yamazaki
-constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 24;  // as partition() has it
+constexpr Sides kNodes = {4, 4, 4};  // Yoshitani & Yamazaki
 
 }  // namespace
 
@@ -108,7 +107,7 @@ Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
     if (t.voxels.empty()) return nodes;
     const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 together");
     // The sides are 10^6 at most: no product overflows.
-    if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMostVoxels)
+    if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMostCutVoxels)
         throw UserError(fmt::format("--voxels {}: must be at most 2^24 together", t.voxels));
     return voxels;
 }

@@ -12,7 +12,6 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 24;
 constexpr double kUsualShare = 16;  // entries for each object or voxel that default divisions make, at most
 constexpr std::uint64_t kMostEntries = std::uint64_t{1} << 30;  // of all lists: 4 GB of words
 
@@ -96,8 +95,8 @@ class Voxels {
 };
 
 [[noreturn]] void refuse_entries(const Divisions& d) {
-    throw UserError(fmt::format("{}x{}x{} voxels register objects more than {} times; take fewer voxels", d[0], d[1],
-                                d[2], kMostEntries));
+    throw TooManyEntries(fmt::format("{}x{}x{} voxels register objects more than {} times; take fewer voxels", d[0],
+                                     d[1], d[2], kMostEntries));
 }
 
 // Counts each voxel's objects, then puts them there.
@@ -131,10 +130,10 @@ void fill_alike(Partition& p, const HitRegions& regions, const Divisions& divisi
 
 void check_divisions(const Divisions& d) {
     for (const std::uint64_t along : d)
-        if (along == 0 || along > kMostVoxels || std::uint64_t{d[0]} * d[1] > kMostVoxels ||
-            std::uint64_t{d[0]} * d[1] * d[2] > kMostVoxels)
+        if (along == 0 || along > kMostCutVoxels || std::uint64_t{d[0]} * d[1] > kMostCutVoxels ||
+            std::uint64_t{d[0]} * d[1] * d[2] > kMostCutVoxels)
             throw UserError(fmt::format("{}x{}x{} voxels: each number must be at least 1, their product at most {}",
-                                        d[0], d[1], d[2], kMostVoxels));
+                                        d[0], d[1], d[2], kMostCutVoxels));
 }
 
 // How far rays may come from, in units of the scene's extent: with infinite planes, on which rays start anywhere,
@@ -230,7 +229,7 @@ Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::u
     if (!regions.known()) return {1, 1, 1};
     const Box box = box_around(regions);
     const RegionSizes sizes(regions);
-    auto wanted = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMostVoxels));
+    auto wanted = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMostCutVoxels));
     for (;; wanted /= 2) {
         const Divisions divisions = cubes(box.max - box.min, wanted);
         if (wanted <= 1 || sizes.entries(box, divisions) <= kUsualShare * std::max(wanted, sizes.objects()))

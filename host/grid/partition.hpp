@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/error.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/grid.h"
@@ -11,6 +12,13 @@
 namespace raya {
 
 using Divisions = std::array<std::uint32_t, 3>;  // voxels along x, y, z
+
+inline constexpr std::uint64_t kMostCutVoxels = std::uint64_t{1} << 24;  // of one partition
+
+/// Lists that would have more than 2^30 entries: 4 GB of words.
+struct TooManyEntries : UserError {
+    using UserError::UserError;
+};
 
 /// Which objects touch which voxel. Objects are numbered as in the job (kernels/shared/job.h). Planes are infinite:
 /// they are in no list, and are tested for every ray.
@@ -32,7 +40,7 @@ struct Partition {
 /// list, even where the walk is off by its own rounding. Where no bound is known (Y < 10; scenes whose squares leave
 /// the format; cones too steep for it) every object is in every list, the box holds all points within RAYA_FAR, and
 /// reach is RAYA_FAR.
-/// UserError for 0 divisions, more than 2^24 voxels or more than 2^30 entries of lists.
+/// UserError for 0 divisions or more than kMostCutVoxels, TooManyEntries.
 /// Objects `apart` (numbers, ascending) are in no list, and the box need not hold them.
 Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                     const std::vector<std::uint32_t>& apart = {});

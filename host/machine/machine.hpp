@@ -31,9 +31,9 @@ struct Machine {
     std::optional<std::uint32_t> pes;              // empty: as many as the image has columns
     std::optional<std::uint64_t> pe_memory_bytes;  // empty: no limit
     std::uint32_t bounces = 8;
-    NumberFormat format{};               // that its PEs compute in
-    MappingRule mapping{};               // pixels to PEs, of a ring
-    std::optional<DynamicPlan> dynamic;  // where its PEs take their pixels while it runs
+    NumberFormat format{};                 // that its PEs compute in
+    MappingRule mapping{};                 // pixels to PEs, of a ring
+    std::optional<DynamicPlan> dynamic{};  // where its PEs take their pixels while it runs
 
     // Rates of the time model (machine/time_model.hpp); empty where they are not known.
     std::optional<double> cycle_ns;          // of a PE, one multiply-accumulate

@@ -25,23 +25,23 @@ struct MappingRule {
 };
 
 /// Each row is shifted by `offset` slots against the row above.
-constexpr MappingRule cyclic_mapping(std::uint32_t offset, Fold fold = Fold::kCyclic) {
+inline MappingRule cyclic_mapping(std::uint32_t offset, Fold fold = Fold::kCyclic) {
     return {static_cast<std::uint32_t>(fold), offset};
 }
 /// Offset 0: Kohata & Ito's column split.
-constexpr MappingRule column_mapping(Fold fold = Fold::kCyclic) { return cyclic_mapping(0, fold); }
+inline MappingRule column_mapping(Fold fold = Fold::kCyclic) { return cyclic_mapping(0, fold); }
 /// Scan lines in turn; contiguous scan lines.
-constexpr MappingRule rows_mapping() { return {RAYA_ROWS, 0}; }
-constexpr MappingRule blocks_mapping() { return {RAYA_BLOCKS, 0}; }
+inline MappingRule rows_mapping() { return {RAYA_ROWS, 0}; }
+inline MappingRule blocks_mapping() { return {RAYA_BLOCKS, 0}; }
 /// `down` rows of `across` PEs: every `down`-th line, every `across`-th pixel of it. Both below 2^16.
-constexpr MappingRule grid_mapping(std::uint32_t down, std::uint32_t across) {
-    return {RAYA_GRID, down << 16 | across};
+inline MappingRule grid_mapping(std::uint32_t down, std::uint32_t across) {
+    return {RAYA_GRID, raya_pair(down, across)};
 }
 /// Tiles of `width` x `height` pixels in turn. Both below 2^16.
-constexpr MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
-    return {RAYA_TILES, width << 16 | height};
+inline MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
+    return {RAYA_TILES, raya_pair(width, height)};
 }
 /// Each pixel at random, shares even.
-constexpr MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
+inline MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
 
 }  // namespace raya

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "host/error.hpp"
+#include "host/machine/does_not_fit.hpp"
 
 namespace raya {
 namespace {
@@ -13,10 +13,12 @@ constexpr std::uint64_t kWaitingRayWords = 7;  // origin, direction, weight
 constexpr std::uint64_t kWalkWords = 32;       // the ray, its hit, normal, mirror direction, tint, sum and counters
 constexpr std::uint64_t kPixelBytes = 12;
 
-void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes, const std::string& remedy) {
-    throw UserError(fmt::format("{}: needs {:.1f} KB in every PE, a PE of {} has {} KB; use {}--machine grande", what,
-                                static_cast<double>(bytes) / 1024, machine.title, *machine.pe_memory_bytes / 1024,
-                                remedy));
+[[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
+                         const std::string& remedy) {
+    throw DoesNotFit(
+        fmt::format("{}: needs {:.1f} KB in every PE, a PE of {} has {} KB; use {}--machine grande", what,
+                    static_cast<double>(bytes) / 1024, machine.title, *machine.pe_memory_bytes / 1024, remedy),
+        bytes, *machine.pe_memory_bytes);
 }
 
 }  // namespace

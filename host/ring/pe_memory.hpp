@@ -34,8 +34,8 @@ struct PeDemand {
 /// Without anti-aliasing: each PE gets room for its whole share where that fits; else for as many pixels as fit, which
 /// are then gathered block by block. The paper's run on one PE (256 x 256 pixels, 32 KB) needs that.
 /// With it: room for the whole share and its sums or marks, and for as long a band of pixels on their way round the
-/// ring as fits, all bands alike. UserError, with both figures and the remedy, if not even one pixel, or one of a band,
-/// fits.
+/// ring as fits, all bands alike. DoesNotFit, with both figures and the remedy, if not even one pixel, or one of a
+/// band, fits.
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand);
 
 }  // namespace raya

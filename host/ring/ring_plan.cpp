@@ -9,7 +9,7 @@ namespace {
 // they are many and few of them are read, they stay where they are.
 bool words_local(const PackedJob& job, const DeviceInfo& device, bool accel) {
     constexpr std::size_t kMostCopied = 64 * 1024;
-    const std::size_t bytes = 4 * job.words().size() + sizeof(cl_uint);
+    const std::size_t bytes = 4 * job.words().size() + sizeof(std::uint32_t);
     return bytes <= (accel ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
 }
 

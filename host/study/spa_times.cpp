@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "host/error.hpp"
+#include "host/machine/does_not_fit.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"
 #include "host/study/paper.hpp"
@@ -36,7 +36,7 @@ SpaRun run_on_spa(Session& session, const LabelledScene& scene, std::uint32_t si
     settings.antialias.method = method;
     try {
         return run_of(settings, RingRenderer(session, scene.scene, settings).render());
-    } catch (const UserError&) {  // too large for its PEs; whatever else is wrong is wrong on grande as well
+    } catch (const DoesNotFit&) {
         settings.machine = machine_named("grande");
         return run_of(settings, RingRenderer(session, scene.scene, settings).render());
     }

@@ -7,10 +7,12 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "host/error.hpp"
 #include "host/machine/t805.hpp"
 #include "host/scene/generate.hpp"
 #include "host/study/grid_run.hpp"
+#include "host/torus/queue_search.hpp"
+#include "host/torus/standstill.hpp"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
 namespace {
@@ -45,6 +47,17 @@ void add_root(TorusRun& run) {
         run.root_link_ms = std::max(run.root_link_ms, t805_link_ms(r.link_words[out], r.link_words[in]));
     }
     run.root_processor_ms = 1e-6 * kT805CycleNs * static_cast<double>(cycles);
+}
+
+// Renders with another queue; false where the machine stands still.
+bool renders(TorusRenderer& renderer, std::uint32_t queue, const PacketSink& sink, TorusResult& result) {
+    renderer.set_queue(queue);
+    try {
+        result = renderer.render({}, sink);
+        return true;
+    } catch (const Standstill&) {
+        return false;
+    }
 }
 
 // What follows from the result.
@@ -86,15 +99,23 @@ TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_
                       const PacketSink& sink) {
     TorusRun run;
     run.plan = plan;
-    const TorusSettings settings = settings_of(plan, size);
+    TorusSettings settings = settings_of(plan, size);
     run.torus = settings.torus;
+    const std::uint32_t shortest =
+        raya_shortest_queue(static_cast<std::uint32_t>(scene.scene.lights.size()), settings.bounces);
+    while (run.plan.queue > 0 && run.plan.queue < shortest) run.plan.queue *= 2;
+    settings.queue = run.plan.queue;
+    TorusRenderer renderer(session, scene.scene, settings);
     try {
-        run.result = TorusRenderer(session, scene.scene, settings).render({}, sink);
-    } catch (const UserError&) {  // too short a queue, or what no queue mends
+        run.result = renderer.render({}, sink);
+    } catch (const Standstill&) {
         if (plan.queue == 0) throw;
-        TorusPlan longer = plan;
-        longer.queue = 2 * plan.queue < default_queue(raya_nodes(run.torus)) ? 2 * plan.queue : 0;
-        return run_on_torus(session, scene, size, longer, sink);
+        QueueTrial trial = renderer.queue_trial();
+        trial.most = std::max(default_queue(raya_nodes(run.torus)), shortest);
+        trial.ends = [&](const NodeBuffers& buffers) { return renders(renderer, buffers.queue, sink, run.result); };
+        const QueueFound found = longer_queue(run.plan.queue, trial);
+        if (!found.ends) throw;
+        run.plan.queue = found.queue;
     }
     complete(run);
     return run;

@@ -7,6 +7,7 @@
 
 #include "host/error.hpp"
 #include "host/scene/word_records.hpp"
+#include "host/torus/bisection.hpp"
 #include "host/torus/topology.hpp"
 #include "kernels/shared/packet.h"
 
@@ -19,8 +20,8 @@ constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t)
 // The longest queue from `least` to `most` that fits beside the words; `least` fits.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t least,
                             std::uint32_t most) {
-    while (most > least && node_bytes(words, buffers_for(most), links) > memory) --most;
-    return most;
+    return last_that_holds(least, std::uint64_t{most} + 1,
+                           [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
 }
 
 // KB with a decimal: what is needed rounded up, what there is rounded down, so that too much always reads as too much.
@@ -114,12 +115,13 @@ std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fe
     std::uint32_t fit = 0;
     for (std::uint32_t node = 0; node < demand.nodes(); ++node) fit += demand.bytes(demand.words(node)) <= demand.limit;
     const std::uint64_t words = demand.words(fullest);
-    throw UserError(
+    throw NodesDoNotFit(
         fmt::format("{}: does not fit: {} of {} nodes can hold what they have to, {} cannot; {} needs {} "
                     "beside {} of buffers, a node has {}; {}",
                     demand.scene, fit, demand.nodes(), demand.nodes() - fit, node_text(demand.memories, fullest),
                     needed_kb(4 * words), needed_kb(demand.bytes(0)), present_kb(demand.limit),
-                    remedies(demand, words, fewest, trial)));
+                    remedies(demand, words, fewest, trial)),
+        demand.bytes(words), demand.limit, demand.nodes(), fit, fullest);
 }
 
 }  // namespace
@@ -140,17 +142,18 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
     return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, most));
 }
 
+bool device_holds(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceInfo& device) {
+    const std::uint64_t queues = kPacketBytes * nodes * buffers.queue;
+    const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + buffers.box);
+    const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
+    return std::max(queues, boxes) <= device.max_allocation_bytes && all <= device.global_memory_bytes;
+}
+
 void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
                          const DeviceInfo& device) {
-    const auto fits = [&](const NodeBuffers& b) {
-        const std::uint64_t queues = kPacketBytes * nodes * b.queue;
-        const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + b.box);
-        const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
-        return std::max(queues, boxes) <= device.max_allocation_bytes && all <= device.global_memory_bytes;
-    };
-    if (fits(buffers)) return;
+    if (device_holds(buffers, nodes, device)) return;
     std::uint32_t queue = buffers.queue;
-    while (queue > 1 && !fits(buffers_for(queue))) queue /= 2;
+    while (queue > 1 && !device_holds(buffers_for(queue), nodes, device)) queue /= 2;
     throw UserError(
         fmt::format("{}: queues of {} packets and their boxes in {} nodes do not fit into {}; use --queue {} or "
                     "fewer nodes",

@@ -1,6 +1,5 @@
 #include "host/torus/node_trial.hpp"
 
-#include "host/error.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
 
@@ -23,14 +22,15 @@ class Trial {
         TrialNodes tried{0, voxels_};
         for (std::size_t axis = 0; axis < 3; ++axis)
             while (tried.voxels[axis] < nodes[axis]) tried.voxels[axis] *= 2;
-        if (everywhere_ * voxels_of(tried.voxels) > kFewEntries) return {};
+        const std::uint64_t voxels = voxels_of(tried.voxels);
+        if (voxels > kMostCutVoxels || everywhere_ * voxels > kFewEntries) return {};
         try {
             const Partition cut = partition(job_, format_, tried.voxels);
-            everywhere_ = cut.objects.size() == cut.distinct * voxels_of(tried.voxels) ? cut.distinct : 0;
+            everywhere_ = cut.objects.size() == cut.distinct * voxels ? cut.distinct : 0;
             // Which voxels a node holds does not depend on its links.
             tried.words = fullest_node_words(job_, cut, make_torus(nodes, Links::kTorus3d));
             return tried;
-        } catch (const UserError&) {  // more voxels or entries than a partition may have
+        } catch (const TooManyEntries&) {
             return {};
         }
     }

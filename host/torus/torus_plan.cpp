@@ -9,6 +9,7 @@
 #include "host/scene/word_records.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/windows.hpp"
+#include "kernels/shared/packet.h"
 
 namespace raya {
 

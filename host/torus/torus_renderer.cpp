@@ -6,13 +6,12 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "host/error.hpp"
 #include "host/machine/t805.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/census.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/node_array.hpp"
-#include "host/torus/queue_search.hpp"
+#include "host/torus/standstill.hpp"
 #include "host/torus/torus_plan.hpp"
 
 namespace raya {
@@ -21,11 +20,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-// The machine has come to a stand before its image was done.
-struct Standstill {
-    std::uint64_t superstep, live, full;  // packets in the machine, nodes whose queue is full
-};
 
 PackedJob packed(const Session& session, const Scene& scene, const TorusSettings& settings) {
     const StepLog::Step step = session.step("pack scene");
@@ -58,15 +52,14 @@ struct TorusRenderer::Parts {
 
     void divide(std::uint32_t lights);
     void build();
-    void run(TorusResult& result, std::vector<raya_head>& returns, const ProgressCallback& progress,
-             const PacketWatch& packets, const SuperstepSink& step_sink);
+    std::optional<StandstillFigures> run(TorusResult& result, std::vector<raya_head>& returns,
+                                         const ProgressCallback& progress, const PacketWatch& packets,
+                                         const SuperstepSink& step_sink);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
     void describe(TorusResult& result) const;
-    std::uint64_t fullest_words() const;
-    bool ends_with(const NodeBuffers& other);
-    std::string remedy();
+    std::uint64_t node_bytes(const NodeBuffers& any) const;
 };
 
 TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings)
@@ -98,6 +91,34 @@ void TorusRenderer::set_pixels(const PixelSubset& pixels) {
     parts_->nodes->set_pixels(pixels);
 }
 
+void TorusRenderer::set_queue(std::uint32_t queue) {
+    Parts& p = *parts_;
+    const NodeBuffers other = buffers_for(queue);
+    check_device_memory(p.scene, other, raya_nodes(p.settings.torus), p.session.device());
+    p.buffers = other;
+    p.build();
+}
+
+bool TorusRenderer::ends() {
+    TorusResult result;
+    std::vector<raya_head> returns;
+    return !parts_->run(result, returns, {}, {}, {});
+}
+
+QueueTrial TorusRenderer::queue_trial() {
+    Parts& p = *parts_;
+    return {
+        .bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
+        .limit = p.settings.memory_bytes.value_or(UINT64_MAX),
+        .device_holds =
+            [&p](const NodeBuffers& b) { return device_holds(b, raya_nodes(p.settings.torus), p.session.device()); },
+        .ends =
+            [this](const NodeBuffers& b) {
+                set_queue(b.queue);
+                return ends();
+            }};
+}
+
 void TorusRenderer::Parts::build() {
     const StepLog::Step step = session.step("set up device");
     const Clock::time_point start = Clock::now();
@@ -123,15 +144,7 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     TorusResult result;
     std::vector<raya_head> returns;
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
-    try {
-        p.run(result, returns, progress, {sink, packets_every}, step_sink);
-    } catch (const Standstill& still) {
-        throw UserError(
-            fmt::format("{}: the machine stands still in superstep {}: {} packets wait for each other, {} of {} queues "
-                        "are full at {} packets; {}",
-                        p.scene, still.superstep, still.live, still.full, raya_nodes(p.settings.torus), p.buffers.queue,
-                        p.remedy()));
-    }
+    if (const auto stand = p.run(result, returns, progress, {sink, packets_every}, step_sink)) throw Standstill(*stand);
     p.compose(result, returns);
     p.collect(result);
     result.render_s = seconds_since(start);
@@ -140,8 +153,10 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     return result;
 }
 
-void TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns, const ProgressCallback& progress,
-                               const PacketWatch& packets, const SuperstepSink& step_sink) {
+// To the machine's end, or to a stand.
+std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
+                                                           const ProgressCallback& progress, const PacketWatch& packets,
+                                                           const SuperstepSink& step_sink) {
     const StepLog::Step step = session.step("supersteps");
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
@@ -165,11 +180,13 @@ void TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& retu
             step_sink({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
         for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
         if (progress) progress(census.looked);
-        if (census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made) return;
+        if (census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made) return {};
         crowded = census.fullest > buffers.queue / 4;
         // What a superstep with little room has accepted is seen in the next one.
         stands = census.progress == 0 && most_words == 0 ? stands + 1 : 0;
-        if (stands == 3) throw Standstill{superstep, census.live, census.full};
+        if (stands == 3)
+            return StandstillFigures{scene,        superstep, census.live, census.full, raya_nodes(settings.torus),
+                                     buffers.queue};
         room = stands > 0 ? Room::kTight : Room::kWholeTree;
     }
 }
@@ -212,50 +229,24 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
             fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], pixels_of(settings)));
 }
 
-std::uint64_t TorusRenderer::Parts::fullest_words() const {
+// Of the fullest node.
+std::uint64_t TorusRenderer::Parts::node_bytes(const NodeBuffers& any) const {
     std::uint64_t words = 0;
     for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
         words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
-    return words;
+    return raya::node_bytes(words, any, links_of_node(settings.torus));
 }
 
 void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.copies = memories.copies;
     result.buffers = buffers;
     result.copied_words = nodes->words_local() ? memories.words.size() : 0;
-    result.node_bytes = raya::node_bytes(fullest_words(), buffers, links_of_node(settings.torus));
+    result.node_bytes = node_bytes(buffers);
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;
     result.build_options = nodes->build_options();
     result.build_s = build_s;
     result.commands = session.profile().summary();
-}
-
-// With another queue, to the end or to a stand.
-bool TorusRenderer::Parts::ends_with(const NodeBuffers& other) {
-    check_device_memory(scene, other, raya_nodes(settings.torus), session.device());
-    buffers = other;
-    build();
-    TorusResult result;
-    std::vector<raya_head> returns;
-    try {
-        run(result, returns, {}, {}, {});
-    } catch (const Standstill&) {
-        return false;
-    }
-    return true;
-}
-
-std::string TorusRenderer::Parts::remedy() {
-    const NodeBuffers asked = buffers;
-    const auto bytes = [&](const NodeBuffers& b) {
-        return raya::node_bytes(fullest_words(), b, links_of_node(settings.torus));
-    };
-    const std::string text = longer_queue(asked.queue, {bytes, settings.memory_bytes.value_or(UINT64_MAX),
-                                                        [this](const NodeBuffers& b) { return ends_with(b); }});
-    buffers = asked;
-    build();
-    return text;
 }
 
 }  // namespace raya

@@ -7,6 +7,7 @@
 #include "host/files/progress.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/packet_record.hpp"
+#include "host/torus/queue_search.hpp"
 #include "host/torus/superstep.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/torus/torus_settings.hpp"
@@ -22,13 +23,23 @@ class TorusRenderer {
 
     /// One image; may be called again. `sink`, where given, is told of every packet between nodes, in the order of
     /// supersteps, then sources, or of those of supersteps 0, `packets_every`, ... alone, since telling takes time;
-    /// `step_sink` of every superstep. UserError where the machine stands still, with a queue
-    /// that is long enough.
+    /// `step_sink` of every superstep. Throws Standstill.
     TorusResult render(const ProgressCallback& progress = {}, const PacketSink& sink = {},
                        const SuperstepSink& step_sink = {}, std::uint32_t packets_every = 1);
 
     /// Other pixels for the images that follow: groups of a machine render in turn without building anew.
     void set_pixels(const PixelSubset& pixels);
+
+    /// Queues of that many packets for the images that follow, whatever a node's memory holds. UserError where the
+    /// device cannot hold them, DeviceError.
+    void set_queue(std::uint32_t queue);
+
+    /// Whether the machine comes to its end: an image's supersteps alone.
+    bool ends();
+
+    /// What longer queues than this machine's are weighed against and tried with. It refers to the renderer, which
+    /// keeps the last queue that was tried.
+    QueueTrial queue_trial();
 
   private:
     struct Parts;

@@ -1,4 +1,6 @@
 // The torus's options: what the program refuses before it renders, and what its help says.
+#include "host/scene/nff_reader.hpp"
+#include "kernels/shared/traffic.h"
 #include "tests/cli/refusals.hpp"
 
 namespace raya {
@@ -78,6 +80,24 @@ TEST_CASE("a trace of packets that could not be written is refused before anythi
         outputs,
         {"render", scene_file("planes"), "-o", outputs / "x.png", "--machine", "torus", "--packets", outputs.path()}, 2,
         {outputs.path(), "gzip"});
+}
+
+TEST_CASE("a machine that stands still is refused with a queue that has been tried", "[cli]") {
+    const std::string file = scene_file("mirrors");
+    const auto lights = static_cast<std::uint32_t>(read_nff(file).lights.size());
+    const std::string queue = std::to_string(raya_shortest_queue(lights, 4));
+    const Words machine = {"--machine", "torus", "--links", "torus2d", "--size",  "24", "--format", "spa22",
+                           "--bounces", "4",     "--lanes", "4",       "--group", "1",  "--queue",  queue};
+    const ScratchFolder outputs;
+    check_refused(outputs,
+                  [&] {
+                      Words words = {"render", file, "-o", outputs / "x.png"};
+                      words.insert(words.end(), machine.begin(), machine.end());
+                      return words;
+                  }(),
+                  2,
+                  {"the machine stands still in superstep", "are full at " + queue + " packets; --queue ",
+                   " is long enough (tried)"});
 }
 
 TEST_CASE("bench takes no torus", "[cli]") {

@@ -128,7 +128,13 @@ TEST_CASE("a scene that leaves no room for a pixel is refused with both figures 
     };
     const std::uint64_t words = (32 * 1024 - walk_bytes(8) - 12) / 4;  // the most that fit
     CHECK(plan(words).block_pixels == 1);
-    CHECK_THROWS_AS(plan(words + 1), UserError);
+    try {
+        plan(words + 1);
+        FAIL("it fits");
+    } catch (const DoesNotFit& error) {
+        CHECK(error.needed_bytes == 4 * (words + 1) + walk_bytes(8) + 12);
+        CHECK(error.memory_bytes == 32 * 1024);
+    }
     const std::uint64_t hundred_kb = (100 * 1024 - walk_bytes(8) - 12) / 4;
     CHECK_THROWS_WITH(plan(hundred_kb), Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") &&
                                             Contains("the SPA") && Contains("--machine grande") &&
@@ -142,7 +148,7 @@ TEST_CASE("a share that leaves no room for a pixel on its way is refused with bo
         PeDemand d = demand(700, 333, method);
         const std::uint64_t least = bytes_at_rest(d) + 12;
         CHECK(plan_pe_memory(machine_of(least), d).band_pixels == 1);
-        CHECK_THROWS_AS(plan_pe_memory(machine_of(least - 1), d), UserError);
+        CHECK_THROWS_AS(plan_pe_memory(machine_of(least - 1), d), DoesNotFit);
         CHECK_NOTHROW(plan_pe_memory(machine_of(least - 1), demand(700, 333)));
         d.scene = "wide.nff";
         d.share = 1;

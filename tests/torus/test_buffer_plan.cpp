@@ -167,6 +167,17 @@ TEST_CASE("what does not fit is refused with figures, the fullest node and the r
     CHECK(refusal(0) == figures + fmt::format("use --pe-memory {}", enough));
     CHECK(plan_buffers("s.nff", memories, torus, enough, 0, 9).queue >= 9);
 
+    try {
+        plan_buffers("s.nff", memories, torus, limit, 0, 9);
+        FAIL("it fits");
+    } catch (const NodesDoNotFit& error) {
+        CHECK(error.nodes == 4);
+        CHECK(error.fitting == 3);
+        CHECK(error.fullest == 1);
+        CHECK(error.needed_bytes == bytes_with(300) + packet_bytes(9, 4));
+        CHECK(error.memory_bytes == limit);
+    }
+
     // Six links instead of four: four more boxes of two rays and two more of two returns, 640 bytes less for the words.
     EvenTrial trial{8 * (bytes_with(200) - 640) / 4, 0};
     const auto remedy = [&](const char* nodes) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "host/torus/standstill.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"
 #include "tests/torus/render_torus.hpp"
@@ -38,16 +39,14 @@ TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     return c;
 }
 
-// Where the machine stands still, the queue that it says is enough is taken.
-TorusResult render_with_enough(Session& session, const Scene& scene, TorusCase c) {
+// Where the machine stands still, a queue that is long enough is looked for.
+TorusResult render_with_enough(Session& session, const Scene& scene, const TorusCase& c) {
+    TorusRenderer renderer(session, scene, settings_of(c));
     try {
-        return render_torus(session, scene, c);
-    } catch (const UserError& error) {
-        const std::string text = error.what();
-        const std::size_t at = text.find("--queue ");
-        if (text.find("stands still") == std::string::npos || at == std::string::npos) throw;
-        c.queue = static_cast<std::uint32_t>(std::stoul(text.substr(at + 8)));
-        return render_torus(session, scene, c);
+        return renderer.render();
+    } catch (const Standstill& still) {
+        if (!longer_queue(still.figures.queue, renderer.queue_trial()).ends) throw;
+        return renderer.render();
     }
 }
 

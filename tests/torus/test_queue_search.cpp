@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "host/error.hpp"
+#include "host/torus/bisection.hpp"
 #include "host/torus/queue_search.hpp"
 
 namespace raya {
@@ -12,16 +13,24 @@ namespace {
 struct Machine {
     std::uint32_t enough;
     std::uint64_t limit = UINT64_MAX;
-    std::uint32_t device = UINT32_MAX;  // longer ones do not fit into the device
+    std::uint32_t device = UINT32_MAX;  // longer ones do not fit into the device,
+    std::uint32_t driver = UINT32_MAX;  // ... which is only found out when they are taken
+    std::uint32_t most = kLongestQueue;
     std::vector<std::uint32_t> tried{};
 
-    std::string remedy(std::uint32_t queue) {
-        return longer_queue(queue, {[](const NodeBuffers& b) { return std::uint64_t{10} * b.queue; }, limit,
-                                    [this](const NodeBuffers& b) {
-                                        tried.push_back(b.queue);
-                                        if (b.queue > device) throw DeviceError("too long");
-                                        return b.queue >= enough;
-                                    }});
+    std::string remedy(std::uint32_t queue) { return queue_remedy(search(queue)); }
+
+    QueueFound search(std::uint32_t queue) {
+        return longer_queue(queue, {.bytes = [](const NodeBuffers& b) { return std::uint64_t{10} * b.queue; },
+                                    .limit = limit,
+                                    .most = most,
+                                    .device_holds = [this](const NodeBuffers& b) { return b.queue <= device; },
+                                    .ends =
+                                        [this](const NodeBuffers& b) {
+                                            tried.push_back(b.queue);
+                                            if (b.queue > driver) throw DeviceError("too long");
+                                            return b.queue >= enough;
+                                        }});
     }
 };
 
@@ -59,8 +68,38 @@ TEST_CASE("the search ends where the device cannot hold more", "[torus]") {
     Machine machine{.enough = 5000, .device = 300};
     CHECK(machine.remedy(50) ==
           "no queue up to 200 packets is long enough, and the device cannot hold longer ones; use fewer nodes");
+    CHECK(machine.tried == Queues{100, 200});
+    Machine surprised{.enough = 5000, .driver = 300};
+    CHECK(surprised.remedy(50) == machine.remedy(50));
+    CHECK(surprised.tried == Queues{100, 200, 400});
     Machine endless{.enough = UINT32_MAX};
     CHECK(endless.remedy(1).find("no queue up to 1073741824 packets") == 0);
+}
+
+TEST_CASE("a search that is told the longest queue tries that one last", "[torus]") {
+    Machine machine{.enough = 90, .most = 100};
+    const QueueFound found = machine.search(30);
+    CHECK(machine.tried == Queues{60, 100});
+    CHECK((found.ends && found.fits));
+    CHECK(found.queue == 100);
+    CHECK(found.bytes == 1000);
+    machine.enough = 101;
+    CHECK_FALSE(machine.search(30).ends);
+}
+
+TEST_CASE("bisection finds the last number that holds, in as many steps as the range has bits", "[torus]") {
+    for (const std::uint64_t above : {6ull, 7ull, 1000ull, 1ull << 32})
+        for (const std::uint64_t last : {5ull, 6ull, 999ull, (1ull << 32) - 1}) {
+            if (last >= above) continue;
+            int asked = 0;
+            const auto holds = [&](std::uint32_t number) {
+                ++asked;
+                return number <= last;
+            };
+            CAPTURE(above, last);
+            CHECK(last_that_holds(5, above, holds) == last);
+            CHECK(asked <= 32);
+        }
 }
 
 }  // namespace raya

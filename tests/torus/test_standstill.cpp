@@ -1,9 +1,11 @@
 // Short queues: the shortest works where nodes need not wait for each other, one packet less is refused, and a machine
-// that stands still says which queue is long enough.
+// that stands still ends with the queue that is found for it.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
+#include <optional>
 
+#include "host/torus/standstill.hpp"
 #include "tests/torus/random_torus.hpp"
 #include "tests/torus/render_torus.hpp"
 
@@ -34,12 +36,24 @@ Scene scene_in_one_voxel(std::uint64_t seed) {
     return scene;
 }
 
-// The queue that a refusal calls long enough; 0 where it names none.
-std::uint32_t enough_of(const std::string& refusal) {
-    const std::size_t at = refusal.find("--queue ");
-    return at == std::string::npos || refusal.find(" is long enough") == std::string::npos
-               ? 0
-               : static_cast<std::uint32_t>(std::stoul(refusal.substr(at + 8)));
+// A render, and how the machine stood still, if it did.
+struct Outcome {
+    std::string image;
+    std::optional<StandstillFigures> stand;
+};
+
+Outcome outcome_of(TorusRenderer& renderer) {
+    try {
+        return {one_image(renderer.render()), {}};
+    } catch (const Standstill& still) {
+        return {{}, still.figures};
+    }
+}
+
+QueueFound search(TorusRenderer& renderer, std::uint32_t queue) { return longer_queue(queue, renderer.queue_trial()); }
+
+bool same(const StandstillFigures& a, const StandstillFigures& b) {
+    return a.superstep == b.superstep && a.live == b.live && a.full == b.full && a.queue == b.queue;
 }
 
 }  // namespace
@@ -94,7 +108,7 @@ TEST_CASE("a queue of one packet less is refused with the number that it needs",
     }
 }
 
-TEST_CASE("a machine that stands still names a queue that is long enough", "[torus]") {
+TEST_CASE("a machine that stands still ends with the queue that is found", "[torus]") {
     const char* const name = GENERATE("centre", "mirrors");
     const Scene scene = project_scene(name);
     Session session(choose_device(""));
@@ -109,43 +123,50 @@ TEST_CASE("a machine that stands still names a queue that is long enough", "[tor
         short_one.inject = inject;
         CAPTURE(name, case_text(short_one));
         TorusRenderer renderer(session, scene, settings_of(short_one));
-        std::string image;
-        const std::string refusal = refusal_of([&] { image = one_image(renderer.render()); });
-        if (refusal == "not refused") CHECK(image == expected);
-        if (refusal == "not refused") continue;
+        const Outcome first = outcome_of(renderer);
+        if (!first.stand) CHECK(first.image == expected);
+        if (!first.stand) continue;
         ++stood;
-        CHECK_THAT(refusal, Catch::Contains("stands still in superstep") && Catch::Contains("--queue"));
-        const std::uint32_t enough = enough_of(refusal);
-        CHECK(enough > short_one.queue);
-        // The same again: nothing is left over from the first time, nor from looking for a longer queue.
-        CHECK(refusal_of([&] { renderer.render(); }) == refusal);
-        short_one.queue = enough;
-        const TorusResult r = render_torus(session, scene, short_one);
+        CHECK(first.stand->queue == short_one.queue);
+        CHECK(first.stand->nodes == 64);
+        CHECK(first.stand->full <= 64);
+        CHECK(first.stand->live > first.stand->full * short_one.queue);
+        CHECK(first.stand->superstep > 0);
+        const QueueFound found = search(renderer, short_one.queue);
+        CHECK((found.ends && found.fits));
+        CHECK(found.queue > short_one.queue);
+        const TorusResult r = renderer.render();  // with the queue that was found
         CHECK(one_image(r) == expected);
-        CHECK(r.queue_max <= enough);
+        CHECK(r.queue_max <= found.queue);
         CHECK(r.made == r.ended);
+        // The same again: nothing is left over from the first time, nor from looking for a longer queue.
+        renderer.set_queue(short_one.queue);
+        const Outcome again = outcome_of(renderer);
+        REQUIRE(again.stand);
+        CHECK(same(*again.stand, *first.stand));
     }
     CHECK(stood >= 2);  // else this test says nothing
 }
 
-TEST_CASE("the queue that is named fits the memory that a node has", "[torus]") {
+TEST_CASE("the queue that is found fits the memory that a node has", "[torus]") {
     const Scene scene = project_scene("mirrors");
     Session session(choose_device(""));
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
     c.format = "spa22";
     c.bounces = 8;
-    const auto render = [&](std::uint32_t queue) {
-        c.queue = queue;
-        TorusSettings settings = settings_of(c);
-        settings.memory_bytes = 16384;  // less than twice the shortest queue needs
-        return TorusRenderer(session, scene, settings).render();
-    };
-    const std::string refusal = refusal_of([&] { render(shortest_of(scene, c)); });
-    INFO(refusal);
-    const std::uint32_t enough = enough_of(refusal);
-    REQUIRE(enough > shortest_of(scene, c));
-    CHECK(enough < 2 * shortest_of(scene, c));
-    CHECK(one_image(render(enough)) == ring_image(scene, c));
+    const std::uint32_t shortest = shortest_of(scene, c);
+    c.queue = shortest;
+    TorusSettings settings = settings_of(c);
+    settings.memory_bytes = 16384;  // less than twice the shortest queue needs
+    TorusRenderer renderer(session, scene, settings);
+    REQUIRE(outcome_of(renderer).stand);
+    const QueueFound found = search(renderer, shortest);
+    CHECK((found.ends && found.fits));
+    CHECK(found.bytes <= 16384);
+    REQUIRE(found.queue > shortest);
+    CHECK(found.queue < 2 * shortest);
+    settings.queue = found.queue;  // as a user would ask for it
+    CHECK(one_image(TorusRenderer(session, scene, settings).render()) == ring_image(scene, c));
 }
 
 TEST_CASE("one packet less than just enough stands still", "[torus]") {
@@ -170,7 +191,7 @@ TEST_CASE("one packet less than just enough stands still", "[torus]") {
     CHECK_THAT(last, Catch::Contains("stands still") && Catch::Contains("are full at " + std::to_string(queue - 1)));
 }
 
-TEST_CASE("queues of any length give the image or name one that does", "[torus]") {
+TEST_CASE("queues of any length lead to the image, or to one that does", "[torus]") {
     const std::uint64_t seed = 616;
     SplitMix random(seed);
     Session session(choose_device(""));
@@ -183,15 +204,14 @@ TEST_CASE("queues of any length give the image or name one that does", "[torus]"
         c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
         c.queue = shortest_of(scene, c) + random_below(random, 8);
         CAPTURE(seed, i, case_text(c));
-        std::string image;
-        const std::string refusal = refusal_of([&] { image = one_image(render_torus(session, scene, c)); });
-        if (refusal != "not refused") {
+        TorusRenderer renderer(session, scene, settings_of(c));
+        Outcome outcome = outcome_of(renderer);
+        if (outcome.stand) {
             ++stood;
-            c.queue = enough_of(refusal);
-            REQUIRE(c.queue > 0);
-            image = one_image(render_torus(session, scene, c));
+            REQUIRE(search(renderer, c.queue).ends);
+            outcome = outcome_of(renderer);
         }
-        CHECK(image == ring_image(scene, c));
+        CHECK(outcome.image == ring_image(scene, c));
     }
     CAPTURE(stood);
     CHECK(stood < 10);
