@@ -48,13 +48,14 @@ void GzipText::deflate_all(std::string_view text, bool last) {
     if (!stream_) throw std::logic_error("GzipText: finished already");
     z_stream& z = stream_->z;
     std::array<Bytef, 1 << 16> block{};
-    z.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(text.data()));  // zlib reads it only
+    const void* const in = text.data();
+    z.next_in = const_cast<Bytef*>(static_cast<const Bytef*>(in));  // zlib reads it only
     z.avail_in = static_cast<uInt>(text.size());
     do {
         z.next_out = block.data();
         z.avail_out = static_cast<uInt>(block.size());
         if (deflate(&z, last ? Z_FINISH : Z_NO_FLUSH) == Z_STREAM_ERROR) throw std::logic_error("zlib: deflate failed");
-        bytes_.append(reinterpret_cast<const char*>(block.data()), block.size() - z.avail_out);
+        bytes_.append(block.begin(), block.end() - z.avail_out);
     } while (z.avail_out == 0);
 }
 
