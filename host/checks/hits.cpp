@@ -25,7 +25,7 @@ Program built(Session& session, const HitBuild& build) {
 
 PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     JobSettings settings;
-    settings.mapping = {16, 16, 1, 0, RAYA_FOLD_CYCLIC};
+    settings.image = {16, 16};
     settings.format = format;
     PackedJob job = pack_job(scene, settings);
     append_grid(job, accel_partition(job, format, {.grid = true, .divisions = Divisions{6, 5, 4}}));
@@ -121,7 +121,7 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
     rays.pad();
     Verdict verdict;
     for (const char* kernel : {"hits_of_all", "hits_by_grid"}) {
-        const Hits got = find_hits(runner, kernel, job.words, rays);
+        const Hits got = find_hits(runner, kernel, job.words(), rays);
         const auto what = [&](std::size_t i) {
             return fmt::format("{}: {} ({})", known.name, known.hits[i].what, kernel);
         };
@@ -139,8 +139,8 @@ Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, st
         const Scene scene = parse_nff(embedded_files().at(file), file);
         const PackedJob job = job_with_grid(scene, runner.format());
         const Rays rays = random_rays(runner.format(), scene_extent(scene), rays_each);
-        const Hits all = find_hits(runner, "hits_of_all", job.words, rays);
-        const Hits walked = find_hits(runner, "hits_by_grid", job.words, rays);
+        const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
+        const Hits walked = find_hits(runner, "hits_by_grid", job.words(), rays);
         const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
         const Verdict verdict = compare_hits(all, walked, rays, rays_each, what, "");
         if (verdict.outcome != Outcome::kPass) return verdict;

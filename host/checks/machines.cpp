@@ -7,6 +7,7 @@
 
 #include "host/checks/patterns.hpp"
 #include "host/kernels/kernels.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
 namespace {

@@ -19,7 +19,7 @@ class NodeCheck {
     NodeCheck(const PackedJob& job, NodeReader& node) : job_(job), header_(job.header()), node_(node) {}
 
     Words job_section(std::size_t at, std::size_t count) const {
-        const auto first = job_.words.begin() + static_cast<std::ptrdiff_t>(at);
+        const auto first = job_.words().begin() + static_cast<std::ptrdiff_t>(at);
         return {first, first + static_cast<std::ptrdiff_t>(count)};
     }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "host/scene/split_mix.hpp"
+#include "host/torus/topology.hpp"
 #include "host/torus/torus_time.hpp"
 
 namespace raya {
