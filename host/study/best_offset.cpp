@@ -1,5 +1,4 @@
 // The best offset for the user's scene: balance against communication, for each number of PEs and anti-aliasing.
-#include <ranges>
 #include <span>
 
 #include "host/study/arrays.hpp"

@@ -2,7 +2,6 @@
 // does memory forbid? Harada et al. 1995, reference [1] of Yoshitani & Yamazaki.
 #include <array>
 #include <numeric>
-#include <ranges>
 
 #include "host/machine/t805.hpp"
 #include "host/study/prose.hpp"
