@@ -85,7 +85,7 @@ def wrong_with_cmake(words):
 def wrong_with_ctest(words):
     known = output_of(["ctest", "--help"])[1]
     missing = [w for w in words[1:] if w.startswith("-") and not re.search(rf"(^|\s){re.sub(r'(?<=^-j)[0-9]+$', '', w)}\b", known)]
-    wanted = junit_of(shlex.split(re.search(r"^ctest .*", (ROOT / "tools/test").read_text(), re.M)[0]))
+    wanted = junit_of(shlex.split(re.search(r"^ *ctest .*", (ROOT / "tools/test").read_text(), re.M)[0]))
     if missing:
         return f"ctest has no {missing}"
     return "" if junit_of(words) == wanted else f"tools/test writes {wanted}"
