@@ -20,6 +20,7 @@ namespace raya {
 /// A text as a template's argument.
 template <std::size_t Size>
 struct FixedText {
+    // NOLINTNEXTLINE(google-explicit-constructor): a literal stands for it, as in Uint<"begin">
     consteval FixedText(const char (&from)[Size]) { std::copy_n(from, Size, text); }
     char text[Size]{};
 };
