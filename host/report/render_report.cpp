@@ -122,6 +122,10 @@ std::uint64_t ray_count(const EventCounts& e) {
     return e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED] + e[RAYA_SHADOW];
 }
 
+std::uint64_t test_count(const EventCounts& e) {
+    return e[RAYA_SPHERE_TESTS] + e[RAYA_PLANE_TESTS] + e[RAYA_POLYGON_TESTS] + e[RAYA_CONE_TESTS];
+}
+
 Json to_json(const RenderReport& r) {
     const EventCounts& e = r.events;
     Json json;
@@ -192,11 +196,10 @@ std::string accel_line(const RenderReport& r) {
     const AccelReport& a = *r.accel;
     const EventCounts& e = r.events;
     const auto rays = static_cast<double>(ray_count(e));
-    const std::uint64_t tests = e[RAYA_SPHERE_TESTS] + e[RAYA_PLANE_TESTS] + e[RAYA_POLYGON_TESTS] + e[RAYA_CONE_TESTS];
     return fmt::format("grid    {}x{}x{} voxels, {} copies of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
                        a.divisions[0], a.divisions[1], a.divisions[2], a.copies,
-                       a.apart ? fmt::format(", {} held apart", a.apart) : "", static_cast<double>(tests) / rays,
-                       static_cast<double>(e[RAYA_STEPS]) / rays);
+                       a.apart ? fmt::format(", {} held apart", a.apart) : "",
+                       static_cast<double>(test_count(e)) / rays, static_cast<double>(e[RAYA_STEPS]) / rays);
 }
 
 std::string memory_line(const RenderReport& r) {

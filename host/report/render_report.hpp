@@ -88,6 +88,9 @@ struct RenderReport {
 /// Rays of all kinds.
 std::uint64_t ray_count(const EventCounts& events);
 
+/// Tests of rays against objects of all kinds.
+std::uint64_t test_count(const EventCounts& events);
+
 /// The keys are fixed; more may be added.
 nlohmann::ordered_json to_json(const RenderReport& report);
 

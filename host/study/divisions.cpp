@@ -69,7 +69,7 @@ StudyTable table_of_runs(const std::vector<Series>& all) {
          {"A x B x C", &GridRun::sides},
          {"copies", &GridRun::copies},
          {"rays", &GridRun::rays},
-         {"tests", [](const GridRun& run) { return tests_of(run.events); }},
+         {"tests", [](const GridRun& run) { return test_count(run.events); }},
          {"steps", [](const GridRun& run) { return run.events[RAYA_STEPS]; }},
          {"tests a ray", [=](const GridRun& run) { return a_ray(run.tests(), run); }},
          {"steps a ray", [=](const GridRun& run) { return a_ray(static_cast<double>(run.events[RAYA_STEPS]), run); }},

@@ -51,14 +51,6 @@ GridRun run_grid(Session& session, const LabelledScene& scene, const Divisions& 
 
 std::string GridRun::sides() const { return sides_text(divisions); }
 
-std::uint64_t rays_of(const EventCounts& events) {
-    return events[RAYA_PRIMARY] + events[RAYA_REFLECTED] + events[RAYA_REFRACTED] + events[RAYA_SHADOW];
-}
-
-std::uint64_t tests_of(const EventCounts& events) {
-    return events[RAYA_SPHERE_TESTS] + events[RAYA_PLANE_TESTS] + events[RAYA_POLYGON_TESTS] + events[RAYA_CONE_TESTS];
-}
-
 double t805_ms(const EventCounts& events) {
     constexpr double kMsPerNs = 1e-6;
     const auto cycles = t805_cycles();

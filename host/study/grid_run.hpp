@@ -6,6 +6,7 @@
 #include "host/cl/commands.hpp"
 #include "host/grid/partition.hpp"
 #include "host/machine/machine.hpp"
+#include "host/report/render_report.hpp"
 #include "host/scene/packer.hpp"
 #include "host/study/measured.hpp"
 #include "host/study/scenes.hpp"
@@ -18,12 +19,6 @@ struct GridSettings {
     Sampling sampling = Sampling::kCentres;
     int runs = 1;  // renders that are timed
 };
-
-/// Primary, reflected, refracted and shadow rays.
-std::uint64_t rays_of(const EventCounts& events);
-
-/// Rays against spheres, planes, polygons and cones.
-std::uint64_t tests_of(const EventCounts& events);
 
 /// Modelled milliseconds that one T805 computes for these events, and no message (machine/t805.hpp).
 double t805_ms(const EventCounts& events);
@@ -39,8 +34,8 @@ struct GridRun {
 
     std::uint64_t voxels() const { return std::uint64_t{divisions[0]} * divisions[1] * divisions[2]; }
     std::string sides() const;  // "4x4x2"
-    std::uint64_t rays() const { return rays_of(events); }
-    double tests() const { return static_cast<double>(tests_of(events)); }
+    std::uint64_t rays() const { return ray_count(events); }
+    double tests() const { return static_cast<double>(test_count(events)); }
     double modelled_s() const { return 1e-3 * t805_ms(events); }
     /// Into how many voxels an object comes.
     double voxels_of_object() const { return 1 + static_cast<double>(copies) / static_cast<double>(objects); }

@@ -66,7 +66,7 @@ StudyTable table_of_rays(const Rows& rows) {
                      {"refracted", counted(RAYA_REFRACTED)},
                      {"shadow rays", counted(RAYA_SHADOW)},
                      {"walks", counted(RAYA_WALKS)},
-                     {"tests", [](const Row& row) { return tests_of(row.run.events); }},
+                     {"tests", [](const Row& row) { return test_count(row.run.events); }},
                      {"steps", counted(RAYA_STEPS)},
                      {"tests a walk", [](const Row& row) { return row.run.tests() / row.count(RAYA_WALKS); }},
                      {"steps a walk", [](const Row& row) { return row.count(RAYA_STEPS) / row.count(RAYA_WALKS); }},

@@ -7,7 +7,6 @@
 #include "host/ring/route.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"
-#include "host/study/spa_times.hpp"
 
 namespace raya {
 namespace {
@@ -63,6 +62,23 @@ std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, Anti
         times.push_back(time);
     }
     return times;
+}
+
+SmoothingRuns smoothing_runs(Laboratory& lab, const Scenes& scenes, AntialiasMethod method) {
+    SmoothingRuns study{.scene = one_of(scenes), .size = lab.size(256)};
+    Costs costs;
+    for (const std::uint32_t p : {0u, 8u, 16u}) {
+        const std::uint32_t offset = p % study.size;
+        const SpaRun run = run_on_spa(lab.session(), study.scene, study.size, study.size, offset, method);
+        study.factor = fitted_factor(run.cost.front());
+        study.recomputed = static_cast<double>(run.recomputed) / static_cast<double>(run.pixels);
+        study.rows.push_back({offset, run.communication.rotations, spa_time(run), spa_time(run, study.factor),
+                              run.phases.front(), run.phases.back()});
+        costs.trace = run.cost.front();
+        costs.supersample = run.cost.back();
+    }
+    study.times = offset_times(costs, study.size, method);
+    return study;
 }
 
 std::uint32_t usual_size(const Scene& scene) {

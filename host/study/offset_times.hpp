@@ -1,11 +1,16 @@
-// What every offset of the cyclic mapping takes on the SPA, from one cost image: computing and rotations together.
+// What every offset of the cyclic mapping takes on the SPA, from one cost image: computing and rotations together. Some
+// are rendered too, to count what Tables 3 and 4 show.
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "host/ring/antialias.hpp"
 #include "host/scene/scene.hpp"
 #include "host/study/laboratory.hpp"
+#include "host/study/spa_times.hpp"
 
 namespace raya {
 
@@ -34,5 +39,38 @@ std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, Anti
 /// Pixels a side of the image in which a scene's offsets are compared, unless asked for: the scene's own size where it
 /// is square, else 256, halved while the scene's objects would make it take minutes.
 std::uint32_t usual_size(const Scene& scene);
+
+/// One offset, rendered with anti-aliasing.
+struct SmoothedOffset {
+    std::uint32_t offset = 0;
+    std::uint64_t rotations = 0;
+    ModelledTime plain, fitted;
+    Load first, again;  // of the first pass; of supersampling
+
+    std::string name() const { return offset_name(offset); }
+    double communication_ms() const { return plain.communication_ms; }
+    double compare_ms() const { return plain.compare_ms; }
+    double trace_ms() const { return spa_ms(static_cast<double>(first.max)); }
+    double supersample_ms() const { return spa_ms(static_cast<double>(again.max)); }
+    double imbalance() const { return again.imbalance; }
+    double alone_ms() const { return compare_ms() + supersample_ms(); }
+    double with_first_ms() const { return alone_ms() + trace_ms(); }
+};
+
+/// A scene smoothed with a PE for each column: three offsets rendered, every one from their costs.
+struct SmoothingRuns {
+    LabelledScene scene;
+    std::uint32_t size = 0;
+    double factor = 1, recomputed = 0;      // share of the pixels
+    std::vector<SmoothedOffset> rows = {};  // p = 0, 8, 16
+    std::vector<OffsetTime> times = {};     // every p, from the cost images, nothing fitted
+
+    const SmoothedOffset& first() const { return rows.front(); }
+    const SmoothedOffset& last() const { return rows.back(); }
+    std::span<const OffsetTime> near() const { return std::span(times).first(std::min<std::size_t>(17, size)); }
+};
+
+/// Of the scene for studies of one, in the laboratory's size, else 256. Throws UserError, DeviceError as run_on_spa().
+SmoothingRuns smoothing_runs(Laboratory& lab, const Scenes& scenes, AntialiasMethod method);
 
 }  // namespace raya

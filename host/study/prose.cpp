@@ -6,6 +6,11 @@
 #include "host/embedded.hpp"
 
 namespace raya {
+namespace {
+
+const std::string& prose_of(const std::string& name) { return embedded_files().at("host/study/prose/" + name + ".md"); }
+
+}  // namespace
 
 StudyPage page_about(const std::string& name, const nlohmann::ordered_json& settings,
                      const nlohmann::ordered_json& words) {
@@ -25,8 +30,8 @@ StudyPage page_about(const std::string& name, const nlohmann::ordered_json& sett
         return result;
     };
     StudyPage page{name, {}, {}, {}, settings};
-    std::istringstream lines(embedded_files().at("host/study/prose/" + name + ".md"));
-    for (std::string line; std::getline(lines, line);)
+    std::istringstream lines(prose_of(name));
+    for (std::string line; std::getline(lines, line) && !line.starts_with("## ");)
         if (line.starts_with("# "))
             page.title = filled(line.substr(2));
         else if (line.starts_with("- "))
@@ -34,6 +39,14 @@ StudyPage page_about(const std::string& name, const nlohmann::ordered_json& sett
         else if (!line.empty())
             page.question = filled(line);
     return page;
+}
+
+std::string sentence(const std::string& name, const std::string& key) {
+    const std::string &prose = prose_of(name), heading = "\n## " + key + "\n\n";
+    const std::size_t at = prose.find(heading);
+    if (at == std::string::npos) throw std::out_of_range(name + ".md has no '" + key + "'");
+    const std::size_t begin = at + heading.size();
+    return prose.substr(begin, prose.find('\n', begin) - begin);
 }
 
 }  // namespace raya

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "host/machine/t805.hpp"
+#include "host/report/render_report.hpp"
 #include "host/scene/generate.hpp"
-#include "host/study/grid_run.hpp"
 #include "host/torus/queue_search.hpp"
 #include "host/torus/standstill.hpp"
 #include "kernels/shared/traffic.h"
@@ -69,9 +69,9 @@ void complete(TorusRun& run) {
 
 }  // namespace
 
-std::uint64_t TorusRun::rays() const { return rays_of(result.events); }
+std::uint64_t TorusRun::rays() const { return ray_count(result.events); }
 
-std::uint64_t TorusRun::tests() const { return tests_of(result.events); }
+std::uint64_t TorusRun::tests() const { return test_count(result.events); }
 
 std::uint64_t TorusRun::packets() const {
     return std::accumulate(result.made.begin(), result.made.end(), std::uint64_t{0});

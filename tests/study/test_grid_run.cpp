@@ -50,10 +50,10 @@ TEST_CASE("rays, tests and modelled time are sums over events", "[study]") {
     for (int i = 0; i < 300; ++i) {
         EventCounts events;
         for (auto& count : events) count = random();
-        CHECK(rays_of(events) ==
+        CHECK(ray_count(events) ==
               events[RAYA_PRIMARY] + events[RAYA_REFLECTED] + events[RAYA_REFRACTED] + events[RAYA_SHADOW]);
-        CHECK(tests_of(events) == events[RAYA_SPHERE_TESTS] + events[RAYA_PLANE_TESTS] + events[RAYA_POLYGON_TESTS] +
-                                      events[RAYA_CONE_TESTS]);
+        CHECK(test_count(events) == events[RAYA_SPHERE_TESTS] + events[RAYA_PLANE_TESTS] + events[RAYA_POLYGON_TESTS] +
+                                        events[RAYA_CONE_TESTS]);
         double ns = 0;
         for (std::size_t event = 0; event < RAYA_EVENTS; ++event)
             ns += 40.0 * t805_cycles()[event] * static_cast<double>(events[event]);
