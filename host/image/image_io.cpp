@@ -48,7 +48,7 @@ void check_shape(int width, int height, std::size_t channels, std::size_t floats
             fmt::format("{} floats are no {} x {} image of {} channels", floats, width, height, channels));
 }
 
-OIIO::ImageSpec make_spec(const Pixels& pixels, OIIO::TypeDesc type, const ImageAttributes& attributes) {
+OIIO::ImageSpec make_spec(const Pixels& pixels, const OIIO::TypeDesc& type, const ImageAttributes& attributes) {
     OIIO::ImageSpec spec(pixels.width, pixels.height, pixels.channels, type);
     if (pixels.channels == 1) spec.channelnames = {"Y"};
     spec.attribute("oiio:ColorSpace", type == OIIO::TypeDesc::UINT8 ? "sRGB" : "Linear");
@@ -96,7 +96,7 @@ void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttribu
     throw UserError(fmt::format("cannot read '{}': {}; give an image that raya wrote", path.string(), reason));
 }
 
-bool read_pixels(OIIO::ImageInput& input, OIIO::TypeDesc type, void* pixels) {
+bool read_pixels(OIIO::ImageInput& input, const OIIO::TypeDesc& type, void* pixels) {
     const int subimage = 0, level = 0, first_channel = 0, end_channel = -1;  // -1: all of them
     return input.read_image(subimage, level, first_channel, end_channel, type, pixels);
 }
