@@ -1,6 +1,4 @@
 // raya: traces rays on models of distributed-memory array machines.
-#include <CLI/CLI.hpp>
-
 #include "host/cli/commands.hpp"
 
 int main(int argc, char** argv) { return raya::run_program(argc, argv); }

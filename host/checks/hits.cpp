@@ -1,6 +1,6 @@
 #include "host/checks/hits.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <bit>
 

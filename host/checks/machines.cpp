@@ -1,6 +1,6 @@
 #include "host/checks/machines.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <numeric>

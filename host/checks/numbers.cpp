@@ -1,6 +1,6 @@
 #include "host/checks/numbers.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 // 32-bit words: as the files of known answers and pictures have them, and one that is never an answer.
 #pragma once
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdint>
 #include <stdexcept>

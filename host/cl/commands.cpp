@@ -1,6 +1,6 @@
 #include "host/cl/commands.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdlib>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #include "host/cl/device.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,6 +1,6 @@
 #include "host/cl/error_names.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <iterator>

@@ -1,7 +1,7 @@
 // A kernel with its argument types: a call with other types does not compile, a kernel with another number of
 // parameters is refused when it is looked up (Program::kernel).
 #pragma once
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstddef>

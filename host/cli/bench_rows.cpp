@@ -1,6 +1,6 @@
 #include "host/cli/bench_rows.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>

@@ -1,7 +1,7 @@
 // raya generate: scenes that a program makes.
 #include "host/scene/generate.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 

@@ -1,6 +1,6 @@
 #include "host/cli/parse.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 

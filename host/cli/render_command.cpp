@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "host/error.hpp"
+#include "host/files/json.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/kernels/device_peak.hpp"
 #include "host/report/profile_table.hpp"

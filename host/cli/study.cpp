@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "host/cli/commands.hpp"
@@ -13,6 +12,7 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/studies.hpp"
 #include "host/error.hpp"
+#include "host/files/json.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/table.hpp"

@@ -1,6 +1,6 @@
 #include "host/cli/torus_options.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"

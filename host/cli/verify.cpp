@@ -6,12 +6,12 @@
 
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
+#include "host/files/json.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/verify/worker.hpp"
@@ -88,10 +88,10 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
     return result;
 }
 
-nlohmann::ordered_json report_of(const std::vector<DeviceChecks>& all, bool full) {
-    nlohmann::ordered_json devices = nlohmann::ordered_json::array();
+Json report_of(const std::vector<DeviceChecks>& all, bool full) {
+    Json devices = Json::list();
     for (const DeviceChecks& one : all) {
-        nlohmann::ordered_json checks = nlohmann::ordered_json::array();
+        Json checks = Json::list();
         for (const Check& check : one.checks) checks.push_back(to_json(check));
         devices.push_back({{"name", one.name},
                            {"platform", one.platform},

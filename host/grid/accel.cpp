@@ -1,6 +1,6 @@
 #include "host/grid/accel.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <span>

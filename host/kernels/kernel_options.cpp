@@ -1,6 +1,6 @@
 #include "host/kernels/kernel_options.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "host/machine/number_format.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "host/report/bench_compare.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <tuple>

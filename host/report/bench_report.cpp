@@ -1,21 +1,20 @@
 #include "host/report/bench_report.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "host/error.hpp"
+#include "host/files/json.hpp"
 
 namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kKind = "raya bench";
 
@@ -41,30 +40,32 @@ Json row_json(const BenchMeasurement& row) {
 }
 
 BenchMeasurement row_of(const Json& json) {
-    return {.kernel = json.at("kernel"),
-            .scene = json.at("scene"),
-            .size = json.at("size"),
-            .array = json.at("array"),
-            .format = json.at("format"),
-            .lanes = json.at("lanes"),
-            .group_size = json.at("group"),
-            .rays = json.at("rays"),
-            .best_s = json.at("ms").at("best").get<double>() * 1e-3,
-            .median_s = json.at("ms").at("median").get<double>() * 1e-3,
-            .samples = json.at("samples"),
-            .hash = json.at("hash"),
-            .build_options = json.at("build_options")};
+    const auto text = [&](const char* key) { return json.at(key).text(); };
+    const auto few = [&](const char* key) { return static_cast<std::uint32_t>(json.at(key).whole(INT32_MAX)); };
+    return {.kernel = text("kernel"),
+            .scene = text("scene"),
+            .size = text("size"),
+            .array = text("array"),
+            .format = text("format"),
+            .lanes = few("lanes"),
+            .group_size = few("group"),
+            .rays = json.at("rays").whole(),
+            .best_s = json.at("ms").at("best").number() * 1e-3,
+            .median_s = json.at("ms").at("median").number() * 1e-3,
+            .samples = static_cast<int>(few("samples")),
+            .hash = text("hash"),
+            .build_options = text("build_options")};
 }
 
 BenchReport report_of(const Json& json) {
     const Json& device = json.at("device");
-    BenchReport report{.raya = json.at("raya"),
-                       .device = device.at("name"),
-                       .platform = device.at("platform"),
-                       .version = device.at("version"),
-                       .driver = device.at("driver"),
+    BenchReport report{.raya = json.at("raya").text(),
+                       .device = device.at("name").text(),
+                       .platform = device.at("platform").text(),
+                       .version = device.at("version").text(),
+                       .driver = device.at("driver").text(),
                        .rows = {}};
-    for (const Json& row : json.at("rows")) report.rows.push_back(row_of(row));
+    for (const Json& row : json.at("rows").elements()) report.rows.push_back(row_of(row));
     return report;
 }
 
@@ -82,7 +83,7 @@ bool can_be_a_time(double seconds) { return std::isfinite(seconds) && seconds > 
 }  // namespace
 
 std::string bench_report_text(const BenchReport& report) {
-    Json rows = Json::array();
+    Json rows = Json::list();
     for (const BenchMeasurement& row : report.rows) rows.push_back(row_json(row));
     const Json json = {{"kind", kKind},
                        {"raya", report.raya},
@@ -99,12 +100,13 @@ BenchReport read_bench_report(const fs::path& path) {
     BenchReport report;
     try {
         const Json json = Json::parse(contents(path));
-        if (!json.is_object() || json.value("kind", Json()) != kKind)
+        const Json* kind = json.find("kind");
+        if (kind == nullptr || !kind->is_text() || kind->text() != kKind)
             refuse(path, "it is JSON, but no report of raya bench");
         report = report_of(json);
-    } catch (const Json::parse_error& error) {
+    } catch (const JsonSyntaxError& error) {
         refuse(path, fmt::format("it is no JSON (at byte {})", error.byte));
-    } catch (const Json::exception& error) {
+    } catch (const JsonError& error) {
         refuse(path, fmt::format("it is no whole report of raya bench: {}", error.what()));
     }
     if (report.rows.empty()) refuse(path, "it has no rows");

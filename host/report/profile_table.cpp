@@ -1,15 +1,12 @@
 #include "host/report/profile_table.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
-
+#include "host/files/json.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string ms(double ns) { return fmt::format("{:.3f}", ns * 1e-6); }
 double number(std::uint64_t count) { return static_cast<double>(count); }
@@ -46,7 +43,7 @@ std::string profile_table(double build_s, const std::vector<ProgramBuild>& build
 }
 
 Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const LabelSummary& c : commands) {
         json.push_back({{"label", c.label},
                         {"kind", c.kind},
@@ -64,7 +61,7 @@ Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {
 }
 
 Json builds_json(const std::vector<ProgramBuild>& builds) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const ProgramBuild& b : builds) json.push_back({{"program", b.name}, {"seconds", b.seconds}});
     return json;
 }

@@ -1,10 +1,10 @@
 // Launches and times of every labelled command, as a table and as JSON.
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "host/cl/profile.hpp"
+#include "host/files/json.hpp"
 #include "host/report/render_report.hpp"
 
 namespace raya {
@@ -16,7 +16,7 @@ std::string profile_table(double build_s, const std::vector<ProgramBuild>& build
                           const std::vector<LabelSummary>& commands);
 
 /// `waits`: with those two times and the bytes moved.
-nlohmann::ordered_json commands_json(const std::vector<LabelSummary>& commands, bool waits);
-nlohmann::ordered_json builds_json(const std::vector<ProgramBuild>& builds);
+Json commands_json(const std::vector<LabelSummary>& commands, bool waits);
+Json builds_json(const std::vector<ProgramBuild>& builds);
 
 }  // namespace raya

@@ -1,16 +1,13 @@
 #include "host/report/render_report.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
-
+#include "host/files/json.hpp"
 #include "host/machine/budget.hpp"
 #include "host/report/profile_table.hpp"
 
 namespace raya {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json load_json(const Load& load) {
     return {{"unit", "cycles"},

@@ -2,13 +2,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "host/cl/profile.hpp"
+#include "host/files/json.hpp"
 #include "host/machine/communication.hpp"
 #include "host/machine/load.hpp"
 #include "host/machine/machine.hpp"
@@ -92,7 +92,7 @@ std::uint64_t ray_count(const EventCounts& events);
 std::uint64_t test_count(const EventCounts& events);
 
 /// The keys are fixed; more may be added.
-nlohmann::ordered_json to_json(const RenderReport& report);
+Json to_json(const RenderReport& report);
 
 /// Rays, u, efficiency and times in a few lines.
 std::string human_summary(const RenderReport& report);

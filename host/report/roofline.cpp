@@ -1,17 +1,15 @@
 #include "host/report/roofline.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "host/files/json.hpp"
 #include "host/machine/budget.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double number(std::uint64_t count) { return static_cast<double>(count); }
 
@@ -136,7 +134,7 @@ Json peak_json(const DevicePeak& p) {
 }
 
 Json roofline_json(const Roofline& roofline) {
-    Json rows = Json::array();
+    Json rows = Json::list();
     for (const RooflineRow& r : roofline.rows) {
         const double operations = number(r.work.all_operations());
         rows.push_back({{"label", r.work.label},

@@ -7,12 +7,12 @@
 // that a kernel has to move at least, each counted once where it is read and once where it is written.
 #pragma once
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host/cl/profile.hpp"
+#include "host/files/json.hpp"
 #include "host/kernels/peak.hpp"
 #include "host/machine/machine.hpp"
 
@@ -57,7 +57,7 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
 /// reached.
 std::string roofline_table(const Roofline& roofline);
 
-nlohmann::ordered_json peak_json(const DevicePeak& peak);
-nlohmann::ordered_json roofline_json(const Roofline& roofline);
+Json peak_json(const DevicePeak& peak);
+Json roofline_json(const Roofline& roofline);
 
 }  // namespace raya

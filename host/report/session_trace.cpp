@@ -1,13 +1,11 @@
 #include "host/report/session_trace.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
 namespace raya {
 namespace {
-
-using Json = TraceFile::Json;
 
 constexpr TraceTrack kSteps = {kTraceHost, 1};
 

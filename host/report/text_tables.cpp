@@ -1,9 +1,10 @@
 #include "host/report/text_tables.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "host/files/json.hpp"
 
 namespace raya {
 namespace {
@@ -27,7 +28,7 @@ std::string csv_field(const std::string& text) {
     return '"' + replaced(text, "\"", "\"\"") + '"';
 }
 
-nlohmann::ordered_json json_number(double value) {
+Json json_number(double value) {
     if (std::isfinite(value)) return value;
     return fmt::format("{}", value);
 }

@@ -1,8 +1,9 @@
 // The pieces that CSV, JSON and Markdown are made of.
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
+#include "host/files/json.hpp"
 
 namespace raya {
 
@@ -13,7 +14,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 std::string csv_field(const std::string& text);
 
 /// The number, or "inf", "-inf" or "nan", as JSON knows finite numbers only.
-nlohmann::ordered_json json_number(double value);
+Json json_number(double value);
 
 /// The first row is the header. Bars in cells are escaped and line ends become spaces, so that the table stays whole.
 std::string markdown_table(const std::vector<std::vector<std::string>>& rows);

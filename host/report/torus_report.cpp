@@ -1,17 +1,15 @@
 #include "host/report/torus_report.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "host/files/json.hpp"
 #include "host/machine/budget.hpp"
 #include "host/machine/t805.hpp"
 
 namespace raya {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Kind {
     std::uint32_t number;

@@ -2,9 +2,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "host/files/json.hpp"
 #include "host/machine/machine.hpp"
 #include "host/machine/time_model.hpp"
 #include "kernels/shared/packet.h"
@@ -36,12 +36,12 @@ struct TorusReport {
     TorusTime modelled;
 };
 
-nlohmann::ordered_json torus_json(const TorusReport& report);
+Json torus_json(const TorusReport& report);
 
-nlohmann::ordered_json torus_time_json(const TorusTime& time);
+Json torus_time_json(const TorusTime& time);
 
 /// Operations of all that was counted, as a T805 does them (machine/t805.hpp).
-nlohmann::ordered_json t805_budget_json(const EventCounts& events);
+Json t805_budget_json(const EventCounts& events);
 
 /// For the summary's first line: nodes, links and voxels.
 std::string torus_machine_text(const TorusReport& report);

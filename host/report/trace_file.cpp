@@ -1,6 +1,6 @@
 #include "host/report/trace_file.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,11 @@
 namespace raya {
 namespace {
 
-std::string json_text(const TraceFile::Json& json) {
-    return json.dump(-1, ' ', false, TraceFile::Json::error_handler_t::replace);  // a driver's name may be in any code
-}
+std::string json_text(const Json& json) { return json.dump(); }
 
 std::string microseconds(std::uint64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
 
-std::string named(const char* what, TraceTrack track, const TraceFile::Json& arguments) {
+std::string named(const char* what, TraceTrack track, const Json& arguments) {
     return fmt::format(R"({{"ph":"M","name":"{}","pid":{},"tid":{},"args":{}}})", what, track.process, track.thread,
                        json_text(arguments));
 }

@@ -7,10 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "host/files/json.hpp"
 
 namespace raya {
 
@@ -27,8 +28,6 @@ struct TraceTrack {
 /// that ends before it begins or crosses another one. Holds the text in memory: about 150 bytes for each event.
 class TraceFile {
   public:
-    using Json = nlohmann::ordered_json;
-
     /// `most_events`: slices, counters and ends of flows; what comes after so many is left out and counted.
     explicit TraceFile(std::size_t most_events) : most_events_(most_events) {}
 

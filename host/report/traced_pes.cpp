@@ -1,6 +1,6 @@
 #include "host/report/traced_pes.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
 #include "host/ring/antialias.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 

@@ -1,6 +1,6 @@
 #include "host/ring/mapping.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "host/ring/ring_renderer.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>

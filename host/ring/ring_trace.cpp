@@ -1,6 +1,6 @@
 #include "host/ring/ring_trace.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -13,8 +13,6 @@
 
 namespace raya {
 namespace {
-
-using Json = TraceFile::Json;
 
 constexpr TraceTrack kPhases = {kTraceMachine, 1};
 constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above", "below"};

@@ -1,6 +1,6 @@
 #include "host/ring/schedule.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <functional>

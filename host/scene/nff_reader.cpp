@@ -1,6 +1,6 @@
 #include "host/scene/nff_reader.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

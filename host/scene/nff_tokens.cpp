@@ -1,6 +1,6 @@
 #include "host/scene/nff_tokens.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "host/scene/nff_writer.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstddef>
 #include <iterator>

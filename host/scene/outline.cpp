@@ -1,6 +1,6 @@
 #include "host/scene/outline.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -138,7 +138,7 @@ StudyPage study_best_offset(Laboratory& lab, const Scenes& given) {
                              [&](const LabelledScene& scene) { return choices_of(lab, scene); });
     Choices all;
     for (const Choices& scene : scenes) all.insert(all.end(), scene.begin(), scene.end());
-    nlohmann::ordered_json settings;
+    Json settings;
     for (const Choices& scene : scenes)
         settings["scenes"].push_back(
             {{"scene", scene[0].scene}, {"size", scene[0].size}, {"format", scene[0].format}, {"fold", "cyclic"}});

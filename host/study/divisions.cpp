@@ -188,7 +188,7 @@ Scenes even_scenes() {
 }  // namespace
 
 StudyPage divisions_page(std::uint32_t side, const std::vector<std::vector<GridRun>>& all, bool from_paper) {
-    nlohmann::ordered_json settings = {{"size", side}, {"bounces", 0}, {"format", "fp32"}};
+    Json settings = {{"size", side}, {"bounces", 0}, {"format", "fp32"}};
     for (const Series& series : all)
         settings["scenes"].push_back({{"scene", series.front().label}, {"objects", series.front().objects}});
     StudyPage page = page_about(

@@ -73,8 +73,8 @@ StudyPage loads_page(const std::string& name, const Pass& pass) {
     for (std::size_t pe = 0; pe < pass.size; ++pe) rows.push_back({pe, columns.per_pe[pe], shifted.per_pe[pe]});
     const double mean = spa_ms(columns.mean);
 
-    StudyPage page =
-        page_about(name, {{"scene", pass.scene}, {"size", pass.size}, {"pes", pass.size}, {"offsets", {0, p}}});
+    StudyPage page = page_about(
+        name, {{"scene", pass.scene}, {"size", pass.size}, {"pes", pass.size}, {"offsets", std::vector{0u, p}}});
     page.comparisons = {
         {"mean load", "ms", pass.paper(paper::kMeanMs), mean, "no factor fitted"},
         {"largest load, p = 0", "ms", pass.paper(paper::kTrace0Ms), spa_ms(static_cast<double>(columns.max))},

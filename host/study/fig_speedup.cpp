@@ -134,7 +134,7 @@ std::string finding_of_stairs(const Rows& rows) {
     const auto best = std::max_element(rows.begin() + half, rows.end() - 1,
                                        [](const Row& a, const Row& b) { return a.cyclic < b.cyclic; });
     const double gain = 100 * (best->cyclic / on(rows, half).cyclic - 1);
-    const Row& square = where(std::span(rows).first(w - 1), is_square).back();
+    const Row square = where(std::span(rows).first(w - 1), is_square).back();
     const std::uint32_t side = root_offset(square.pes);
     return fmt::format(
         "Whole columns make stairs: with {} to {} PEs some PE still has two of the {}, and p = 16 gains {} over {} "

@@ -1,9 +1,9 @@
 #include "host/study/formats_report.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "host/files/json.hpp"
 #include "host/report/text_tables.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/rows.hpp"
@@ -34,8 +34,8 @@ const std::vector<Column<FormatRow>>& columns() {
     return all;
 }
 
-nlohmann::ordered_json row_json(const FormatRow& row) {
-    nlohmann::ordered_json json;
+Json row_json(const FormatRow& row) {
+    Json json;
     for (const auto& [name, figure, unit] : columns())
         if (name.starts_with(kMeasured))
             json["measured"][name.substr(std::string_view(kMeasured).size())] = cell_json(figure(row));
@@ -44,7 +44,7 @@ nlohmann::ordered_json row_json(const FormatRow& row) {
     return json;
 }
 
-nlohmann::ordered_json scene_json(const SceneRows& scene) {
+Json scene_json(const SceneRows& scene) {
     return {{"scene", scene.label}, {"objects", scene.objects}, {"formats", each(scene.rows, row_json)}};
 }
 
@@ -182,7 +182,7 @@ std::string formats_csv(const FormatsStudy& study) {
     return table_csv(all);
 }
 
-nlohmann::ordered_json formats_json(const FormatsStudy& study) {
+Json formats_json(const FormatsStudy& study) {
     return {{"study", "formats"},
             {"image", {{"width", study.width}, {"height", study.height}}},
             {"machine",

@@ -1,9 +1,9 @@
 // A formats study as text: for spreadsheets, for programs and for people. All three say the same.
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "host/files/json.hpp"
 #include "host/study/formats_study.hpp"
 
 namespace raya {
@@ -34,7 +34,7 @@ std::vector<std::string> formats_findings(const FormatsStudy& study);
 std::string formats_csv(const FormatsStudy& study);
 
 /// Everything in the study. JSON has no infinity: the strings "inf" and "-inf" stand for it.
-nlohmann::ordered_json formats_json(const FormatsStudy& study);
+Json formats_json(const FormatsStudy& study);
 
 /// A page: how it was done, all scenes in one table, what is seen, a table for each scene.
 std::string formats_markdown(const FormatsStudy& study);

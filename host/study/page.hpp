@@ -2,11 +2,12 @@
 #pragma once
 #include <concepts>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "host/files/json.hpp"
 
 namespace raya {
 
@@ -77,7 +78,7 @@ struct StudyPage {
     std::string title;
     std::string question;                  // what the reader wants to know, a sentence
     std::vector<std::string> method = {};  // how it was done, a sentence or two each
-    nlohmann::ordered_json settings = {};
+    Json settings = {};
     std::vector<Comparison> comparisons = {};
     std::vector<std::string> findings = {};  // a sentence each, the chief one first
     std::vector<StudyTable> tables = {};

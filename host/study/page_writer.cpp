@@ -1,6 +1,6 @@
 #include "host/study/page_writer.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <set>
@@ -13,7 +13,6 @@
 namespace raya {
 namespace {
 
-using nlohmann::ordered_json;
 using Cells = std::vector<std::vector<std::string>>;
 
 std::string exact(const Cell& cell) {
@@ -38,16 +37,16 @@ std::optional<double> ratio_of(const Comparison& c) {
     return c.ours / *c.paper;
 }
 
-ordered_json optional_json(const std::optional<double>& value) { return value ? json_number(*value) : nullptr; }
+Json optional_json(const std::optional<double>& value) { return value ? json_number(*value) : nullptr; }
 
 template <typename T, typename F>
-ordered_json json_list(const std::vector<T>& items, F json_of) {
-    auto list = ordered_json::array();
+Json json_list(const std::vector<T>& items, F json_of) {
+    auto list = Json::list();
     for (const T& item : items) list.push_back(json_of(item));
     return list;
 }
 
-ordered_json comparison_json(const Comparison& c) {
+Json comparison_json(const Comparison& c) {
     return {{"what", c.what},
             {"unit", c.unit},
             {"paper", optional_json(c.paper)},
@@ -56,14 +55,14 @@ ordered_json comparison_json(const Comparison& c) {
             {"remark", c.remark}};
 }
 
-ordered_json table_json(const StudyTable& table) {
+Json table_json(const StudyTable& table) {
     return {{"name", table.name},
             {"title", table.title},
             {"columns", json_list(table.columns, [](const Heading& heading) { return heading.text(); })},
             {"rows", json_list(table.rows, [](const auto& row) { return json_list(row, cell_json); })}};
 }
 
-ordered_json series_json(const PlotSeries& s) {
+Json series_json(const PlotSeries& s) {
     constexpr const char* kStyles[] = {"line", "points", "steps", "paper"};
     return {{"label", s.label},
             {"style", kStyles[static_cast<int>(s.style)]},
@@ -71,7 +70,7 @@ ordered_json series_json(const PlotSeries& s) {
             {"y", json_list(s.y, json_number)}};
 }
 
-ordered_json plot_json(const StudyPlot& plot) {
+Json plot_json(const StudyPlot& plot) {
     return {{"name", plot.name},
             {"title", plot.title},
             {"x_label", plot.x_label},
@@ -142,13 +141,13 @@ std::string table_csv(const StudyTable& table) {
     return text;
 }
 
-ordered_json cell_json(const Cell& cell) {
+Json cell_json(const Cell& cell) {
     if (const auto* value = std::get_if<double>(&cell)) return json_number(*value);
     if (const auto* count = std::get_if<std::int64_t>(&cell)) return *count;
     return cell.text();
 }
 
-ordered_json page_json(const StudyPage& page) {
+Json page_json(const StudyPage& page) {
     return {{"study", page.name},
             {"title", page.title},
             {"question", page.question},
@@ -173,7 +172,7 @@ std::string page_markdown(const StudyPage& page, const PlotOutcome& plots) {
 PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& page) {
     check_names(page);
     // A scene's label may be a path in any encoding; JSON must be UTF-8.
-    const std::string json = page_json(page).dump(2, ' ', false, ordered_json::error_handler_t::replace);
+    const std::string json = page_json(page).dump(2);
     for (const StudyTable& table : page.tables) write_whole_file(folder / (table.name + ".csv"), table_csv(table));
     write_whole_file(folder / (page.name + ".json"), json + '\n');
     PlotOutcome plots = draw_plots(folder, page);

@@ -14,10 +14,10 @@ namespace raya {
 std::string table_csv(const StudyTable& table);
 
 /// JSON has no infinity: the string "inf" stands for it.
-nlohmann::ordered_json cell_json(const Cell& cell);
+Json cell_json(const Cell& cell);
 
 /// Everything on the page, the points of its plots too.
-nlohmann::ordered_json page_json(const StudyPage& page);
+Json page_json(const StudyPage& page);
 
 /// Question, method, the paper's figures beside ours, findings, tables and plots. Numbers have five digits, as a reader
 /// wants them; the other files have all.

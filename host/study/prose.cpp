@@ -12,12 +12,10 @@ const std::string& prose_of(const std::string& name) { return embedded_files().a
 
 }  // namespace
 
-StudyPage page_about(const std::string& name, const nlohmann::ordered_json& settings,
-                     const nlohmann::ordered_json& words) {
+StudyPage page_about(const std::string& name, const Json& settings, const Json& words) {
     const auto value_of = [&](const std::string& word) {
         for (const auto* known : {&words, &settings})
-            if (const auto at = known->find(word); at != known->end())
-                return at->is_string() ? at->get<std::string>() : at->dump();
+            if (const Json* value = known->find(word)) return value->is_text() ? value->text() : value->dump();
         throw std::logic_error(name + ".md: nothing says what {" + word + "} is");
     };
     const auto filled = [&](const std::string& text) {

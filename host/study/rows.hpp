@@ -4,7 +4,7 @@
 // is called; a plot, a comparison and a finding name the same member. `figure` below is anything that std::invoke takes
 // with a row: a member, a member function, a lambda.
 #pragma once
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "host/study/scenes.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "host/embedded.hpp"
 #include "host/scene/generate.hpp"

@@ -1,6 +1,6 @@
 #include "host/study/spa_times.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "host/machine/does_not_fit.hpp"
 #include "host/ring/schedule.hpp"

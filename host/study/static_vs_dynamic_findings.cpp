@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "host/study/laboratory.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/static_vs_dynamic.hpp"

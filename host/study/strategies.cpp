@@ -1,6 +1,6 @@
 #include "host/study/strategies.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <numeric>

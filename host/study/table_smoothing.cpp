@@ -27,12 +27,12 @@ StudyTable offsets_table(const std::string& name, const SmoothingRuns& study, st
     return table_of(name + "-offsets", "Every offset, nothing fitted", study.times, columns, false);
 }
 
-StudyPage page_of(const std::string& name, const SmoothingRuns& study, const nlohmann::ordered_json& more = {}) {
-    nlohmann::ordered_json settings = {{"scene", study.scene.label},
-                                       {"size", study.size},
-                                       {"pes", study.size},
-                                       {"format", format_name(format_for(study.scene.scene))}};
-    if (!more.is_null()) settings.update(more);
+StudyPage page_of(const std::string& name, const SmoothingRuns& study, std::optional<double> recomputed = {}) {
+    Json settings = {{"scene", study.scene.label},
+                     {"size", study.size},
+                     {"pes", study.size},
+                     {"format", format_name(format_for(study.scene.scene))}};
+    if (recomputed) settings["recomputed_share"] = *recomputed;
     settings["factor"] = study.factor;
     return page_about(name, settings);
 }
@@ -262,7 +262,7 @@ StudyPage study_table3(Laboratory& lab, const Scenes& scenes) {
 StudyPage study_table4(Laboratory& lab, const Scenes& scenes) {
     const SmoothingRuns study = smoothing_runs(lab, scenes, AntialiasMethod::kSupersample);
     const Row &first = study.first(), &last = study.last();
-    StudyPage page = page_of("table4", study, {{"recomputed_share", study.recomputed}});
+    StudyPage page = page_of("table4", study, study.recomputed);
     page.comparisons = supersample_comparisons(study);
     if (at_papers_size(study.size))
         page.findings = {finding_of_reading(first, last, study.factor), finding_of_balance(first, last),

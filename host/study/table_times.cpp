@@ -138,7 +138,7 @@ StudyPage study_table2(Laboratory& lab, const Scenes& scenes) {
     const Times t = times_of(lab, scene, size);
     StudyPage page = page_about("table2", {{"scene", scene.label},
                                            {"size", size},
-                                           {"pes", {size, 1}},
+                                           {"pes", std::vector{size, 1u}},
                                            {"offset", 16 % size},
                                            {"format", format_name(format_for(scene.scene))},
                                            {"factor", t.factor},

@@ -1,6 +1,6 @@
 #include "host/study/torus_runs.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 #include "host/torus/buffer_plan.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

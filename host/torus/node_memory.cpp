@@ -1,7 +1,7 @@
 // Cuts a job's words up into the memories of the torus machine's nodes.
 #include "host/torus/node_memory.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <span>

@@ -1,6 +1,6 @@
 #include "host/torus/packet_trace.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <iterator>

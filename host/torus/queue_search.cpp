@@ -1,6 +1,6 @@
 #include "host/torus/queue_search.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

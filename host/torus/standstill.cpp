@@ -1,6 +1,6 @@
 #include "host/torus/standstill.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace raya {
 

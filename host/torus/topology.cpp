@@ -1,7 +1,7 @@
 // The torus machine's nodes and links: names, and the layout of three sides on a torus of two.
 #include "host/torus/topology.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <iterator>
@@ -14,7 +14,7 @@ namespace {
 // C: the divisor of K that makes the sides I C and J K / C most alike, of equals the lower. Their product is the same
 // for every C, so their difference tells as much as their ratio.
 std::uint32_t slabs_beside(const std::array<std::uint32_t, 3>& nodes) {
-    const auto [i, j, k] = nodes;
+    const std::uint32_t i = nodes[0], j = nodes[1], k = nodes[2];
     const auto apart = [&](std::uint32_t c) {
         const std::uint32_t first = i * c, second = j * (k / c);
         return first > second ? first - second : second - first;

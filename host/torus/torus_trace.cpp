@@ -1,6 +1,6 @@
 #include "host/torus/torus_trace.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,6 @@
 
 namespace raya {
 namespace {
-
-using Json = TraceFile::Json;
 
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
 constexpr std::uint32_t kFirstNode = 2;  // track of node 0

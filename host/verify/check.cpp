@@ -1,14 +1,14 @@
 #include "host/verify/check.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "host/error.hpp"
+#include "host/files/json.hpp"
 
 namespace raya {
 namespace {
@@ -95,12 +95,12 @@ std::string check_lines(const Check& c) {
     return lines;
 }
 
-nlohmann::ordered_json to_json(const Check& c) {
-    nlohmann::ordered_json json = {{"layer", c.layer},
-                                   {"name", c.name},
-                                   {"status", outcome_name(c.verdict.outcome)},
-                                   {"seconds", c.seconds},
-                                   {"told", c.verdict.told}};
+Json to_json(const Check& c) {
+    Json json = {{"layer", c.layer},
+                 {"name", c.name},
+                 {"status", outcome_name(c.verdict.outcome)},
+                 {"seconds", c.seconds},
+                 {"told", c.verdict.told}};
     if (c.verdict.outcome != Outcome::kFail) return json;
     const Fault& f = c.verdict.fault;
     json["where"] = f.where;
@@ -120,17 +120,18 @@ std::vector<std::string> compiler_remedies() {
     return all;
 }
 
-Check check_of(const nlohmann::ordered_json& json) {
-    const std::string status = json.at("status");
-    Check check{json.at("layer"), json.at("name"), json.at("seconds"), {Outcome::kPass, json.at("told"), {}}};
+Check check_of(const Json& json) {
+    const auto text = [&](const char* key) { return json.at(key).text(); };
+    const std::string status = text("status");
+    Check check{text("layer"), text("name"), json.at("seconds").number(), {Outcome::kPass, text("told"), {}}};
     if (status == outcome_name(Outcome::kSkip)) check.verdict.outcome = Outcome::kSkip;
     if (status != outcome_name(Outcome::kFail)) return check;
     check.verdict.outcome = Outcome::kFail;
-    check.verdict.fault = {.where = json.at("where"),
-                           .expected = json.at("expected"),
-                           .got = json.at("got"),
-                           .options = json.at("build_options"),
-                           .remedies = json.at("remedies")};
+    check.verdict.fault = {.where = text("where"),
+                           .expected = text("expected"),
+                           .got = text("got"),
+                           .options = text("build_options"),
+                           .remedies = json.at("remedies").texts()};
     return check;
 }
 

@@ -1,11 +1,11 @@
 // One thing that verify looks at, and what came of it.
 #pragma once
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "host/checks/verdict.hpp"
+#include "host/files/json.hpp"
 
 namespace raya {
 
@@ -34,9 +34,9 @@ std::string check_lines(const Check& check);
 
 /// An object with layer, name, status, seconds and told; of a failure also where, expected, got, build_options and
 /// remedies.
-nlohmann::ordered_json to_json(const Check& check);
+Json to_json(const Check& check);
 
 /// The inverse.
-Check check_of(const nlohmann::ordered_json& json);
+Check check_of(const Json& json);
 
 }  // namespace raya

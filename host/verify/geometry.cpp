@@ -1,5 +1,5 @@
 // Rays against objects: hits that are known, and the walk through the grid against testing all objects.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "host/checks/hits.hpp"
 #include "host/verify/verify.hpp"

@@ -1,5 +1,5 @@
 // Whole images, bit by bit: pictures that are known, rendered in ways that must not change them.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <bit>
 #include <optional>

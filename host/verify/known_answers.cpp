@@ -1,6 +1,6 @@
 #include "host/verify/known_answers.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <bit>
 #include <sstream>

@@ -2,7 +2,7 @@
 // between buffers. All of it is exact.
 #include "host/checks/machines.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 

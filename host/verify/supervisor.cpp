@@ -1,21 +1,20 @@
 #include "host/verify/supervisor.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/wait.h>
 
 #include <chrono>
 #include <csignal>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "host/error.hpp"
+#include "host/files/json.hpp"
 #include "host/verify/own_process.hpp"
 
 namespace raya {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Json = nlohmann::ordered_json;
 
 std::vector<std::string> remedies(const std::string& full_name, int status, const VerifySettings& settings) {
     std::vector<std::string> all;
@@ -67,14 +66,14 @@ class Supervision {
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
     void take(const Json& line) {
-        if (line.contains("error")) refuse(line.at("kind"), line.at("error"));
-        if (line.contains("devices")) take_device(line);
-        if (line.contains("started")) {
-            running_ = Running{line.at("started").at(0), line.at("started").at(1)};
+        if (const Json* error = line.find("error")) refuse(line.at("kind").text(), error->text());
+        if (line.find("devices")) take_device(line);
+        if (const Json* started = line.find("started")) {
+            running_ = Running{started->at("layer").text(), started->at("name").text()};
             start_ = Clock::now();
         }
-        if (line.contains("check")) finish(check_of(line.at("check")));
-        ended_ = ended_ || line.contains("ended");
+        if (const Json* check = line.find("check")) finish(check_of(*check));
+        ended_ = ended_ || line.find("ended");
     }
 
     [[noreturn]] static void refuse(const std::string& kind, const std::string& error) {
@@ -85,12 +84,12 @@ class Supervision {
 
     void take_device(const Json& line) {
         if (devices_ > 0) return;  // of the processes after the first
-        devices_ = line.at("devices");
-        all_.name = line.at("name");
-        all_.platform = line.at("platform");
-        all_.version = line.at("version");
-        all_.driver = line.at("driver");
-        if (sink_.device) sink_.device(all_, line.at("left_out"));
+        devices_ = line.at("devices").whole();
+        all_.name = line.at("name").text();
+        all_.platform = line.at("platform").text();
+        all_.version = line.at("version").text();
+        all_.driver = line.at("driver").text();
+        if (sink_.device) sink_.device(all_, line.at("left_out").texts());
     }
 
     void finish(const Check& check) {

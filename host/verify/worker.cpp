@@ -1,22 +1,20 @@
 #include "host/verify/worker.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <nlohmann/json.hpp>
 
 #include "host/error.hpp"
+#include "host/files/json.hpp"
 
 namespace raya {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // What a driver says need not be UTF-8.
 void send(int lines, const Json& object) {
-    const std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = object.dump() + "\n";
     for (std::size_t sent = 0; sent < text.size();) {
         const ssize_t count = ::write(lines, text.data() + sent, text.size() - sent);
         if (count < 0 && errno != EINTR) return;
@@ -61,7 +59,7 @@ void run(int lines, const std::string& wanted, std::size_t index, const VerifySe
     verify(device, settings,
            {.started =
                 [&](const std::string& layer, const std::string& name) {
-                    send(lines, {{"started", Json::array({layer, name})}});
+                    send(lines, {{"started", {{"layer", layer}, {"name", name}}}});
                 },
             .finished =
                 [&](const Check& check) {

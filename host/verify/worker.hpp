@@ -2,9 +2,9 @@
 // What it writes, a JSON object a line:
 //
 //     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
-//     {"started": [LAYER, NAME]}    a check begins
-//     {"check": {...}}              and has ended: to_json() of check.hpp
-//     {"ended": true}               that was all
+//     {"started": {"layer": LAYER, "name": NAME}}    a check begins
+//     {"check": {...}}      and has ended: to_json() of check.hpp
+//     {"ended": true}       that was all
 //     {"error": TEXT, "kind": "user" or "device" or "internal"}      nothing more comes
 #pragma once
 #include <cstddef>

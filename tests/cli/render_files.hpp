@@ -2,11 +2,11 @@
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tests/cli/run_program.hpp"
+#include "tests/document.hpp"
 #include "tests/files/scratch_folder.hpp"
 
 namespace raya {
@@ -40,7 +40,7 @@ class RenderFiles {
     const std::string& image() const { return image_; }
     const std::string& cost() const { return cost_; }
     const Outcome& run() const { return run_; }
-    nlohmann::json report() const { return nlohmann::json::parse(file_contents(report_)); }
+    Document report() const { return Document::parse(file_contents(report_)); }
 
   private:
     ScratchFolder folder_;

@@ -1,13 +1,14 @@
 // The keys of a report, as tests compare them.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+
+#include "tests/document.hpp"
 
 namespace raya {
 
 /// Adds "path type" of everything below `json`; all elements of an array share one path.
-inline void list_keys(const nlohmann::json& json, const std::string& path, std::set<std::string>& keys) {
+inline void list_keys(const Document& json, const std::string& path, std::set<std::string>& keys) {
     if (!json.is_structured()) {
         const bool whole = json.is_number_unsigned();
         keys.insert(path + (whole ? " count" : std::string(" ") + json.type_name()));
@@ -17,7 +18,7 @@ inline void list_keys(const nlohmann::json& json, const std::string& path, std::
         list_keys(value, json.is_array() ? path + "[]" : path.empty() ? key : path + "." + key, keys);
 }
 
-inline std::set<std::string> keys_of(const nlohmann::json& report) {
+inline std::set<std::string> keys_of(const Document& report) {
     std::set<std::string> keys;
     list_keys(report, "", keys);
     return keys;

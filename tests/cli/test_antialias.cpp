@@ -1,16 +1,15 @@
 // Anti-aliasing from the command line: what the report says about it, the image of the mask, and what is refused.
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "host/image/image_io.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/cli/report_keys.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
-using Json = nlohmann::json;
 using Loads = std::vector<std::uint64_t>;
 
 constexpr std::uint64_t kPixels = kTestWidth * kTestHeight;
@@ -28,16 +27,16 @@ Loads sum_of(Loads a, const Loads& b) {
 }
 
 /// Launches of the commands with this label.
-std::uint64_t launches_of(const Json& report, const std::string& label) {
+std::uint64_t launches_of(const Document& report, const std::string& label) {
     std::uint64_t launches = 0;
-    for (const Json& command : report["measured"]["commands"])
+    for (const Document& command : report["measured"]["commands"])
         if (command["label"] == label) launches += command["launches"].get<std::uint64_t>();
     return launches;
 }
 
 /// A rotation is two copies: all blocks but one, and that one from end to end.
-void check_rotations(const Json& report) {
-    const Json& ring = report["communication"];
+void check_rotations(const Document& report) {
+    const Document& ring = report["communication"];
     const std::uint64_t rotations = ring["rotations"], pes = report["machine"]["pes"],
                         band = report["antialias"]["band_pixels"];
     CHECK(rotations > 0);
@@ -57,8 +56,8 @@ TEST_CASE("the report of an anti-aliased render has keys of its own", "[cli]") {
 
 TEST_CASE("without anti-aliasing the report says so", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "none"});
-    const Json report = files.report();
-    CHECK(report["antialias"] == Json{{"method", "none"}});
+    const Document report = files.report();
+    CHECK(report["antialias"] == Document{{"method", "none"}});
     CHECK(report["load"]["trace"]["per_pe"] == report["load"]["per_pe"]);
     CHECK(report["communication"]["rotations"] == 0);
     CHECK_FALSE(contains(files.run().out, "ring "));
@@ -67,8 +66,8 @@ TEST_CASE("without anti-aliasing the report says so", "[cli]") {
 
 TEST_CASE("the report of a filtered render adds up", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "filter", "--offset", "3"});
-    const Json report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
-    CHECK(report["antialias"] == Json{{"method", "filter"}, {"band_pixels", kTestHeight}});
+    const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
+    CHECK(report["antialias"] == Document{{"method", "filter"}, {"band_pixels", kTestHeight}});
     CHECK(report["communication"]["rotations"] == 2 + 2 * 3);  // a column for each PE: 1 PE aside, 3 PEs up and down
     check_rotations(report);
     for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain[part]);
@@ -82,8 +81,8 @@ TEST_CASE("the report of a filtered render adds up", "[cli]") {
 
 TEST_CASE("the report of a supersampled render adds up", "[cli]") {
     const RenderFiles files("planes", supersample({"--offset", "3"}));
-    const Json report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
-    const Json &antialias = report["antialias"], &load = report["load"];
+    const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
+    const Document &antialias = report["antialias"], &load = report["load"];
     const std::uint64_t recomputed = antialias["recomputed_pixels"];
     CHECK(antialias["method"] == "supersample");
     CHECK(antialias["threshold"] == 0.125);
@@ -105,15 +104,15 @@ TEST_CASE("the report of a supersampled render adds up", "[cli]") {
 }
 
 TEST_CASE("threshold and points of supersampling do what they say", "[cli]") {
-    const Json all = RenderFiles("planes", supersample({"--threshold", "0"})).report();
+    const Document all = RenderFiles("planes", supersample({"--threshold", "0"})).report();
     CHECK(all["antialias"]["threshold"] == 0.0);
     CHECK(all["antialias"]["recomputed_pixels"] == kPixels);
     CHECK(all["antialias"]["recomputed_share"] == 1.0);
-    const Json axes = RenderFiles("planes", supersample()).report();
-    const Json coarse = RenderFiles("planes", supersample({"--threshold", "0.5"})).report();
+    const Document axes = RenderFiles("planes", supersample()).report();
+    const Document coarse = RenderFiles("planes", supersample({"--threshold", "0.5"})).report();
     CHECK(coarse["antialias"]["threshold"] == 0.5);
     CHECK(coarse["antialias"]["recomputed_pixels"] < axes["antialias"]["recomputed_pixels"]);
-    const Json diagonals = RenderFiles("planes", supersample({"--points", "diagonals"})).report();
+    const Document diagonals = RenderFiles("planes", supersample({"--points", "diagonals"})).report();
     CHECK(diagonals["antialias"]["points"] == "diagonals");
     CHECK(diagonals["antialias"]["recomputed_pixels"] == axes["antialias"]["recomputed_pixels"]);
     CHECK(diagonals["image"]["hash"] != axes["image"]["hash"]);
@@ -123,7 +122,7 @@ TEST_CASE("the mask is white where pixels were supersampled and black elsewhere"
     const std::string extension = GENERATE(".png", ".exr", ".pfm");
     const ScratchFolder folder;
     const std::string mask_file = folder / ("mask" + extension);
-    const Json antialias = RenderFiles("planes", supersample({"--mask", mask_file})).report()["antialias"];
+    const Document antialias = RenderFiles("planes", supersample({"--mask", mask_file})).report()["antialias"];
     const Image mask = read_image(mask_file);
     CAPTURE(extension);
     CHECK(folder.entries() == 1);

@@ -3,6 +3,7 @@
 
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
+#include "tests/document.hpp"
 #include "tests/paths.h"
 
 namespace raya {
@@ -15,11 +16,11 @@ Words small_bench(const Words& more) {
     return arguments;
 }
 
-nlohmann::json json_of(const std::filesystem::path& path) { return nlohmann::json::parse(file_contents(path)); }
+Document json_of(const std::filesystem::path& path) { return Document::parse(file_contents(path)); }
 
 /// A copy of the report in which the row was `factor` times as fast, or another image.
 std::string changed(const ScratchFolder& folder, const std::string& name, double factor, const std::string& hash = {}) {
-    nlohmann::json json = json_of(folder / "base.json");
+    Document json = json_of(folder / "base.json");
     for (const char* part : {"best", "median"})
         json["rows"][0]["ms"][part] = json["rows"][0]["ms"][part].get<double>() / factor;
     if (!hash.empty()) json["rows"][0]["hash"] = hash;
@@ -33,12 +34,12 @@ TEST_CASE("bench --report writes its rows, --compare holds a later run against t
     const Outcome first = run_raya(small_bench({"--report", base}));
     INFO(first.told());
     REQUIRE(first.code == 0);
-    const nlohmann::json report = json_of(base);
+    const Document report = json_of(base);
     CHECK(report["kind"] == "raya bench");
     CHECK(report["raya"] == RAYA_VERSION);
     for (const char* key : {"name", "platform", "version", "driver"}) CHECK(!report["device"][key].empty());
     REQUIRE(report["rows"].size() == 1);
-    const nlohmann::json& row = report["rows"][0];
+    const Document& row = report["rows"][0];
     CHECK(row["kernel"] == "trace");
     CHECK(row["scene"] == "spheres.nff");
     CHECK(row["size"] == "32x32");
@@ -100,7 +101,7 @@ TEST_CASE("bench --ways times whole renders with and without a grid and on the t
                   "--size", "40x30", "--format", "fp32", "--lanes", "4", "--samples", "1", "--report", base});
     INFO(run.told());
     REQUIRE(run.code == 0);
-    const nlohmann::json rows = json_of(base)["rows"];
+    const Document rows = json_of(base)["rows"];
     REQUIRE(rows.size() == 3);
     const char* const kernels[] = {"render, grid", "torus", "render, none"};
     for (std::size_t i = 0; i < 3; ++i) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tests/cli/render_files.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
@@ -104,7 +105,7 @@ TEST_CASE("devices lists each device with the lanes that raya chooses", "[cli]")
 
 TEST_CASE("a render ends with a short summary", "[cli]") {
     const RenderFiles files("centre");
-    const nlohmann::json report = files.report();
+    const Document report = files.report();
     const std::string& out = files.run().out;
     INFO(out);
     CHECK(files.run().err.empty());

@@ -1,5 +1,5 @@
 // What can go wrong around a render once it has begun: a clear message, the right exit code, and no file, whole or not.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <csignal>

@@ -2,19 +2,19 @@
 #include <numeric>
 
 #include "tests/cli/render_files.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
-using Json = nlohmann::json;
 
 // 6 cycles a division, 8 a root, 3 a branch (host/machine/budget.hpp).
-std::uint64_t cycles_of(const Json& budget) {
+std::uint64_t cycles_of(const Document& budget) {
     return budget["multiply_accumulates"].get<std::uint64_t>() + 6 * budget["divisions"].get<std::uint64_t>() +
            8 * budget["roots"].get<std::uint64_t>() + budget["moves"].get<std::uint64_t>() +
            3 * budget["branches"].get<std::uint64_t>();
 }
 
-std::uint64_t sum_of_loads(const Json& load) {
+std::uint64_t sum_of_loads(const Document& load) {
     const auto per_pe = load["per_pe"].get<std::vector<std::uint64_t>>();
     return std::accumulate(per_pe.begin(), per_pe.end(), std::uint64_t{0});
 }
@@ -24,15 +24,15 @@ Approx about(double value) { return Approx(value).epsilon(1e-9); }
 TEST_CASE("the budget's operations are the loads of all PEs", "[cli]") {
     const std::string scene = GENERATE("glass", "polygons", "cones");
     CAPTURE(scene);
-    const Json report = RenderFiles(scene, {"--pes", "5", "--antialias", "supersample"}).report();
+    const Document report = RenderFiles(scene, {"--pes", "5", "--antialias", "supersample"}).report();
     CHECK(cycles_of(report["budget"]) == sum_of_loads(report["load"]));
 }
 
 TEST_CASE("modelled times follow from counted cycles and words", "[cli]") {
     const std::string antialias = GENERATE("none", "filter", "supersample");
     CAPTURE(antialias);
-    const Json report = RenderFiles("centre", {"--pes", "8", "--offset", "3", "--antialias", antialias}).report();
-    const Json &time = report["modelled_ms"], &words = report["communication"], &load = report["load"];
+    const Document report = RenderFiles("centre", {"--pes", "8", "--offset", "3", "--antialias", antialias}).report();
+    const Document &time = report["modelled_ms"], &words = report["communication"], &load = report["load"];
     INFO(time.dump());
     const bool filter = antialias == "filter", supersample = antialias == "supersample";
     const double share = 3 * 12;          // pixels of the PE with most: 3 of the 20 columns of 12

@@ -1,7 +1,6 @@
 // The report of a render, read back: its keys and types, and numbers that must agree with each other, with the scene
 // and with the images.
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 
@@ -9,13 +8,13 @@
 #include "host/scene/nff_reader.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/cli/report_keys.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
-using Json = nlohmann::json;
 
-void check_rays_and_tests(const Json& report, const Scene& scene) {
-    const Json &rays = report["rays"], &tests = report["tests"], &shading = report["shading"];
+void check_rays_and_tests(const Document& report, const Scene& scene) {
+    const Document &rays = report["rays"], &tests = report["tests"], &shading = report["shading"];
     const std::uint64_t primary = rays["primary"], reflected = rays["reflected"], refracted = rays["refracted"],
                         shadow = rays["shadow"], stopped = rays["shadow_hits"], hits = shading["hits"];
     const std::uint64_t all = primary + reflected + refracted + shadow;
@@ -34,12 +33,12 @@ void check_rays_and_tests(const Json& report, const Scene& scene) {
 
 using Loads = std::vector<std::uint64_t>;
 
-Loads loads_of(const Json& report) { return report["load"]["per_pe"].get<Loads>(); }
+Loads loads_of(const Document& report) { return report["load"]["per_pe"].get<Loads>(); }
 
 std::uint64_t sum_of(const Loads& loads) { return std::accumulate(loads.begin(), loads.end(), std::uint64_t{0}); }
 
-void check_load(const Json& report) {
-    const Json& load = report["load"];
+void check_load(const Document& report) {
+    const Document& load = report["load"];
     const Loads per_pe = loads_of(report);
     const auto sum = static_cast<double>(sum_of(per_pe));
     const auto pes = static_cast<double>(per_pe.size());
@@ -56,8 +55,8 @@ void check_load(const Json& report) {
     CHECK(sum / most / pes == close("efficiency"));
 }
 
-void check_communication(const Json& report) {
-    const Json& bus = report["communication"];
+void check_communication(const Document& report) {
+    const Document& bus = report["communication"];
     CHECK(bus["broadcasts"] == 1);
     CHECK(bus["broadcast_words"] > 0);
     CHECK(bus["rotations"] == 0);
@@ -66,12 +65,12 @@ void check_communication(const Json& report) {
     CHECK(bus["gather_words"] == 3 * report["rays"]["primary"].get<std::uint64_t>());
 }
 
-void check_measured(const Json& report) {
-    const Json& measured = report["measured"];
+void check_measured(const Document& report) {
+    const Document& measured = report["measured"];
     CHECK(measured["build_s"] > 0);
     CHECK(measured["render_s"] > 0);
     std::set<std::string> labels;
-    for (const Json& command : measured["commands"]) {
+    for (const Document& command : measured["commands"]) {
         INFO(command.dump());
         labels.insert(command["label"]);
         const double launches = command["launches"], total = command["total_ns"], mean = command["mean_ns"];
@@ -101,7 +100,7 @@ TEST_CASE("the report has its fixed keys, each of its type", "[cli]") {
 TEST_CASE("the report's numbers agree with each other and with the scene", "[cli]") {
     const std::string name = GENERATE("centre", "glass", "polygons", "cones");
     CAPTURE(name);
-    const Json report = RenderFiles(name, {"--pes", "5"}).report();
+    const Document report = RenderFiles(name, {"--pes", "5"}).report();
     check_rays_and_tests(report, read_nff(scene_file(name)));
     check_load(report);
     check_communication(report);
@@ -109,9 +108,9 @@ TEST_CASE("the report's numbers agree with each other and with the scene", "[cli
 }
 
 TEST_CASE("the report says what was asked for", "[cli]") {
-    const Json report = RenderFiles("planes", {"--pes", "7", "--offset", "3", "--fold", "block", "--lanes", "1",
-                                               "--group", "2", "--bounces", "2"})
-                            .report();
+    const Document report = RenderFiles("planes", {"--pes", "7", "--offset", "3", "--fold", "block", "--lanes", "1",
+                                                   "--group", "2", "--bounces", "2"})
+                                .report();
     INFO(report.dump());
     CHECK(report["scene"] == scene_file("planes"));
     CHECK(report["image"]["width"] == kTestWidth);
@@ -137,12 +136,12 @@ TEST_CASE("the report says what was asked for", "[cli]") {
 TEST_CASE("the report names the mapping: slots by name and offset, others by their whole text", "[cli]") {
     struct Row {
         std::string mapping, name;
-        Json offset, fold;
+        Document offset, fold;
     };
     for (const Row& row : {Row{"cyclic", "cyclic", 16, "cyclic"}, Row{"cyclic:3", "cyclic", 3, "cyclic"},
                            Row{"column", "column", 0, "cyclic"}, Row{"grid:4x5", "grid:4x5", {}, {}},
                            Row{"tiles:5x3", "tiles:5x3", {}, {}}, Row{"random", "random:1", {}, {}}}) {
-        const Json machine = RenderFiles("planes", {"--mapping", row.mapping}).report()["machine"];
+        const Document machine = RenderFiles("planes", {"--mapping", row.mapping}).report()["machine"];
         INFO(machine.dump());
         CHECK(machine["mapping"] == row.name);
         CHECK(machine["offset"] == row.offset);
@@ -151,9 +150,9 @@ TEST_CASE("the report names the mapping: slots by name and offset, others by the
 }
 
 TEST_CASE("dynamic and hybrid distribution are simulated, and the report says so", "[cli]") {
-    const Json fixed = RenderFiles("planes", {"--mapping", "cyclic"}).report();
+    const Document fixed = RenderFiles("planes", {"--mapping", "cyclic"}).report();
     for (const char* mapping : {"dynamic:4", "dynamic:4,100", "hybrid:4,0,0.5"}) {
-        const Json report = RenderFiles("planes", {"--mapping", mapping, "--pes", "9"}).report();
+        const Document report = RenderFiles("planes", {"--mapping", mapping, "--pes", "9"}).report();
         INFO(report["load"].dump());
         CHECK(report["machine"]["mapping"] == mapping);
         CHECK(report["machine"]["offset"].is_null());
@@ -170,7 +169,7 @@ TEST_CASE("the hash is that of the pixels written, the cost image adds up to the
     const std::string extension = GENERATE(".exr", ".pfm");
     CAPTURE(extension);
     const RenderFiles files("centre", {"--pes", "5"}, extension, extension);
-    const Json report = files.report();
+    const Document report = files.report();
     CHECK(pixel_hash(read_image(files.image())) == report["image"]["hash"]);
     CHECK(report["image"]["file"] == files.image());
     const GreyImage cost = read_grey_image(files.cost());
@@ -181,8 +180,8 @@ TEST_CASE("the hash is that of the pixels written, the cost image adds up to the
 }
 
 TEST_CASE("one PE of the SPA hands its image over block by block", "[cli]") {
-    const Json one = RenderFiles("centre", {"--size", "256", "--pes", "1"}).report();
-    const Json many = RenderFiles("centre", {"--size", "256", "--pes", "256"}).report();
+    const Document one = RenderFiles("centre", {"--size", "256", "--pes", "1"}).report();
+    const Document many = RenderFiles("centre", {"--size", "256", "--pes", "256"}).report();
     CHECK(one["communication"]["gathers"] > 1);
     CHECK(many["communication"]["gathers"] == 1);
     CHECK(one["machine"]["pe_memory_used_bytes"] <= 32768);

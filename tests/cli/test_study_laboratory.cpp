@@ -2,10 +2,10 @@
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
@@ -37,9 +37,9 @@ TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[
         CHECK_THAT(run.out, Catch::Contains(part));
     const std::filesystem::path folder = outputs / "made/x";
     CHECK(files_in(folder) == Files{"fig8.csv", "fig8.json", "fig8.md"});
-    const auto json = nlohmann::json::parse(file_contents(folder / "fig8.json"));
+    const auto json = Document::parse(file_contents(folder / "fig8.json"));
     CHECK(json["study"] == "fig8");
-    CHECK(json["settings"] == nlohmann::json{{"scene", "centre"}, {"size", 32}, {"pes", 32}});
+    CHECK(json["settings"] == Document{{"scene", "centre"}, {"size", 32}, {"pes", 32}});
     CHECK(json["tables"][0]["rows"].size() == 32);
     const std::string csv = file_contents(folder / "fig8.csv"), markdown = file_contents(folder / "fig8.md");
     CHECK(csv.starts_with("p,u\n0,"));
@@ -63,7 +63,7 @@ TEST_CASE("a study takes a scene of one's own", "[cli]") {
     const Outcome run = run_raya(study(name, outputs, {scene_file("glass"), "--size", "20"}), kNoPython);
     INFO(run.told());
     REQUIRE(run.code == 0);
-    const auto json = nlohmann::json::parse(file_contents(outputs / "made/x" / (name + ".json")));
+    const auto json = Document::parse(file_contents(outputs / "made/x" / (name + ".json")));
     CHECK(json["settings"]["scene"] == scene_file("glass"));
     CHECK(json["settings"]["size"] == 20);
     CHECK_FALSE(contains(run.out, "calibrated"));

@@ -3,18 +3,18 @@
 
 #include "host/report/trace_file.hpp"
 #include "tests/cli/render_files.hpp"
+#include "tests/document.hpp"
 #include "tests/files/gunzip.hpp"
 #include "tests/report/trace_schema.hpp"
 
 namespace raya {
 namespace {
 
-using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
 struct TracedRun {
     Outcome run;
-    Json trace, report;
+    Document trace, report;
 };
 
 TracedRun traced(const std::string& scene, const Words& options, const std::string& ending = ".json") {
@@ -28,22 +28,22 @@ TracedRun traced(const std::string& scene, const Words& options, const std::stri
     REQUIRE(t.run.code == 0);
     CHECK(folder.entries() == 3);
     const std::string text = file_contents(file);
-    t.trace = Json::parse(ending.ends_with(".gz") ? gunzip(text) : text);
-    t.report = Json::parse(file_contents(report));
+    t.trace = Document::parse(ending.ends_with(".gz") ? gunzip(text) : text);
+    t.report = Document::parse(file_contents(report));
     return t;
 }
 
 // Nanoseconds and commands by label and kind.
 using Sums = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;
 
-Sums sums_of_trace(const Json& trace) {
+Sums sums_of_trace(const Document& trace) {
     Sums sums;
-    for (const Json& e : trace["traceEvents"]) {
+    for (const Document& e : trace["traceEvents"]) {
         if (e["ph"] != "X" || e["pid"] != kTraceDevice) continue;
         auto& [ns, commands] = sums[e["name"].get<std::string>() + "/" + e["args"]["kind"].get<std::string>()];
         ns += std::llround(1000 * e["dur"].get<double>());
         ++commands;
-        const Json& a = e["args"];
+        const Document& a = e["args"];
         CHECK(a["queued_ns"] <= a["submitted_ns"]);
         CHECK(a["submitted_ns"] <= a["started_ns"]);
         CHECK(a["ended_ns"].get<std::int64_t>() - a["started_ns"].get<std::int64_t>() ==
@@ -52,9 +52,9 @@ Sums sums_of_trace(const Json& trace) {
     return sums;
 }
 
-Sums sums_of_report(const Json& report) {
+Sums sums_of_report(const Document& report) {
     Sums sums;
-    for (const Json& c : report["measured"]["commands"])
+    for (const Document& c : report["measured"]["commands"])
         sums[c["label"].get<std::string>() + "/" + c["kind"].get<std::string>()] = {c["total_ns"], c["launches"]};
     return sums;
 }
@@ -70,7 +70,7 @@ void check(const TracedRun& t) {
 }
 
 // The host's step of that name contains all commands of the device.
-void check_clocks(const Json& trace) {
+void check_clocks(const Document& trace) {
     const TraceSchema schema(trace);
     const auto steps = schema.slices_of(kTraceHost);
     const auto render = std::find_if(steps.begin(), steps.end(), [](const auto& s) { return s.name == "render"; });
@@ -82,8 +82,8 @@ void check_clocks(const Json& trace) {
     }
 }
 
-const Json& kernel_of(const Json& trace, const std::string& label) {
-    for (const Json& e : trace["traceEvents"])
+const Document& kernel_of(const Document& trace, const std::string& label) {
+    for (const Document& e : trace["traceEvents"])
         if (e["ph"] == "X" && e["name"] == label && e["args"].value("kind", "") == "kernel") return e["args"];
     throw std::runtime_error("no kernel " + label);
 }
@@ -107,13 +107,13 @@ TEST_CASE("traces of smoothed images, with gzip and with a profile", "[cli]") {
     check(traced("centre", {"--pes", "24", "--offset", "4", "--antialias", "filter"}, ".json.gz"));
     const TracedRun t = traced("centre", {"--pes", "24", "--antialias", "supersample", "--profile"}, ".json.gz");
     check(t);
-    const Json& measured = t.report["measured"];
+    const Document& measured = t.report["measured"];
     CHECK(measured["builds"].size() >= 2);
     CHECK(measured["peak"]["copy_bytes_per_s"] > 0);
     Words labels;
-    for (const Json& row : measured["roofline"]) labels.push_back(row["label"]);
+    for (const Document& row : measured["roofline"]) labels.push_back(row["label"]);
     CHECK(labels == Words{"trace", "supersample", "supersample.compare"});
-    for (const Json& row : measured["roofline"]) {
+    for (const Document& row : measured["roofline"]) {
         CHECK(row["operations"] > 0);
         CHECK(row["share_of_roof"] > 0);
         CHECK_THAT(t.run.out, Catch::Contains("roof    " + row["label"].get<std::string>() + ": "));

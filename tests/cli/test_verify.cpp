@@ -1,9 +1,9 @@
 // raya verify, as a user sees it.
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
 #include "tests/verify/faults.hpp"
 
@@ -26,7 +26,7 @@ TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli
     CHECK_THAT(run.out, Catch::Contains("FAIL  machine   mapping: blocks") && Catch::Contains("expected") &&
                             Catch::Contains("try"));
     CHECK_THAT(run.out, Catch::Contains("2 failed"));
-    const auto report = nlohmann::json::parse(file_contents(file));
+    const auto report = Document::parse(file_contents(file));
     CHECK(report["depth"] == "quick");
     const auto& device = report["devices"][0];
     CHECK(device["right"] == false);

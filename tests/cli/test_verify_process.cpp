@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <csignal>
-#include <nlohmann/json.hpp>
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
 
 namespace raya {
@@ -30,7 +30,7 @@ TEST_CASE("a driver that crashes fails the check that ran, and the others go on"
         CHECK_THAT(run.out,
                    Catch::Contains(row.ending) &&
                        Catch::Matches("(.|\n)*: [0-9]+ checks passed, [0-9]+ failed, 0 skipped in [0-9.]+ s\n"));
-        const auto device = nlohmann::json::parse(file_contents(file))["devices"][0];
+        const auto device = Document::parse(file_contents(file))["devices"][0];
         CHECK(device["failed"].get<int>() >= 3);  // copies of blocks, and links that are cleared by rows
         CHECK(device["passed"].get<int>() >= 12);
         for (const auto& check : device["checks"])

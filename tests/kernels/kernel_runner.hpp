@@ -1,6 +1,6 @@
 // Builds kernels of tests for every width of lanes, with and without the compiler's optimiser.
 #pragma once
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdint>
 #include <fstream>

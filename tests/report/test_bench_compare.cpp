@@ -1,11 +1,11 @@
 // A report of raya bench survives its file, wrong files are refused, and a comparison fails exactly where it must.
 #include <catch2/catch.hpp>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "host/error.hpp"
 #include "host/report/bench_compare.hpp"
+#include "tests/document.hpp"
 #include "tests/files/scratch_folder.hpp"
 
 namespace raya {
@@ -75,7 +75,7 @@ TEST_CASE("files that are no bench report are refused with a remedy", "[bench]")
     const ScratchFolder folder;
     const std::string good = bench_report_text(report({row(1, 2, 3)}));
     const auto changed = [&](const auto& change) {
-        nlohmann::json json = nlohmann::json::parse(good);
+        Document json = Document::parse(good);
         change(json);
         return json.dump();
     };

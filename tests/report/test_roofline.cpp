@@ -1,10 +1,10 @@
 // The roofline: figures that can be worked out by hand.
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include "host/machine/budget.hpp"
 #include "host/report/profile_table.hpp"
 #include "host/report/roofline.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
@@ -89,7 +89,7 @@ TEST_CASE("the table says which roof each kernel is under and what share it reac
     CHECK_THAT(table,
                Contains("100.00 Gop/s multiply-adds in fp32; in e6m15: 10.00 multiply-adds, 1.00 divisions, 2.00"));
     CHECK_THAT(table, Contains("compute above 5.00 op/byte"));
-    const auto json = roofline_json(all);
+    const Document json = read_back(roofline_json(all));
     CHECK(json[0]["rays_per_s"] == Approx(5e7));
     CHECK(json[0]["operations_per_s"] == Approx(1e10));
     CHECK(json[0]["share_of_roof"] == Approx(0.1));
@@ -106,10 +106,11 @@ TEST_CASE("the profile keeps builds and waiting apart from the commands", "[repo
     CHECK_THAT(table, Catch::StartsWith("kernel build 1.500 s, not among the commands: ring/trace.cl 1.250 s;"));
     CHECK_THAT(table, Contains("2.000    100.0"));
     CHECK_THAT(table, Contains("1.500             2.500  0.000  0.000\n"));
-    CHECK(commands_json({c}, false)[0].size() == 7);
-    CHECK(commands_json({c}, true)[0]["queue_to_submit_mean_ns"] == 1.5e6);
-    CHECK(commands_json({c}, true)[0]["submit_to_start_mean_ns"] == 2.5e6);
-    CHECK(commands_json({c}, true)[0]["bytes"] == 7);
+    const auto row = [&](bool waits) { return read_back(commands_json({c}, waits))[0]; };
+    CHECK(row(false).size() == 7);
+    CHECK(row(true)["queue_to_submit_mean_ns"] == 1.5e6);
+    CHECK(row(true)["submit_to_start_mean_ns"] == 2.5e6);
+    CHECK(row(true)["bytes"] == 7);
 }
 
 }  // namespace raya

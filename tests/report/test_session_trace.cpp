@@ -3,14 +3,13 @@
 
 #include "host/report/session_trace.hpp"
 #include "host/scene/split_mix.hpp"
+#include "tests/document.hpp"
 #include "tests/report/trace_schema.hpp"
 
 namespace raya {
 namespace {
 
-using Json = nlohmann::json;
-
-Json read(const TraceFile& trace) { return Json::parse(trace.finish(false)); }
+Document read(const TraceFile& trace) { return Document::parse(trace.finish(false)); }
 
 CommandRecord command(const std::string& label, std::uint64_t start, std::uint64_t end) {
     return {.label = label,
@@ -23,8 +22,8 @@ CommandRecord command(const std::string& label, std::uint64_t start, std::uint64
             .object = "a -> b"};
 }
 
-Json slice_named(const Json& trace, const std::string& name) {
-    for (const Json& e : trace["traceEvents"])
+Document slice_named(const Document& trace, const std::string& name) {
+    for (const Document& e : trace["traceEvents"])
         if (e["ph"] == "X" && e["name"] == name) return e;
     return {};
 }
@@ -69,11 +68,11 @@ TEST_CASE("a command's slice has its times, its bytes and its launch", "[report]
     profile.add(command("move", 3000, 3000));
     TraceFile trace(100);
     add_device_commands(trace, "a device", profile, {}, 250);
-    const Json json = read(trace), slice = slice_named(json, "trace"), copy = slice_named(json, "move");
+    const Document json = read(trace), slice = slice_named(json, "trace"), copy = slice_named(json, "move");
     CHECK(TraceSchema(json).faults().empty());
     CHECK(slice["ts"] == 1.0);
     CHECK(slice["dur"] == 1.001);
-    CHECK(slice["args"] == Json::parse(R"({"kind":"kernel","kernel":"trace_kernel","groups":7,"group_size":3,
+    CHECK(slice["args"] == Document::parse(R"({"kind":"kernel","kernel":"trace_kernel","groups":7,"group_size":3,
         "arguments":{"band":"12"},"queued_ns":1000,"submitted_ns":1100,"started_ns":1250,"ended_ns":2251})"));
     CHECK(copy["args"]["bytes"] == 8);
     CHECK(copy["args"]["buffer"] == "a -> b");
@@ -86,7 +85,7 @@ TEST_CASE("another clock is moved to the host's, and what comes too early is kep
     profile.add(command("later", 200, 260));
     TraceFile trace(100);
     add_device_commands(trace, "a device", profile, {.same_clock = false, .offset_ns = 900, .uncertainty_ns = 5}, 1000);
-    const Json json = read(trace);
+    const Document json = read(trace);
     CHECK(TraceSchema(json).faults().empty());
     CHECK(slice_named(json, "later")["ts"] == 0.1);
     CHECK(slice_named(json, "later")["dur"] == 0.06);

@@ -1,14 +1,12 @@
 // The report of a torus: its keys, what it leaves out, and its summary.
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "host/report/render_report.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 RenderReport report_with_figures() {
     RenderReport report;
@@ -44,34 +42,34 @@ RenderReport report_with_figures() {
 }
 
 TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
-    const Json json = to_json(report_with_figures());
-    const Json& torus = json["torus"];
-    CHECK(torus["nodes"] == Json({4, 4, 4}));
-    CHECK(torus["voxels"] == Json({8, 4, 4}));
+    const Document json = read_back(to_json(report_with_figures()));
+    const Document& torus = json["torus"];
+    CHECK(torus["nodes"] == Document({4, 4, 4}));
+    CHECK(torus["voxels"] == Document({8, 4, 4}));
     CHECK(torus["links"] == "torus2d");
     CHECK(torus["inject"] == "root");
     CHECK(torus["supersteps"] == 31);
     CHECK(torus["live_max"] == 900);
     CHECK(torus["packets"] ==
-          Json::parse(R"({"primary": {"made": 10, "ended": 10}, "reflected": {"made": 20, "ended": 20},
+          Document::parse(R"({"primary": {"made": 10, "ended": 10}, "reflected": {"made": 20, "ended": 20},
         "refracted": {"made": 30, "ended": 30}, "shadow": {"made": 40, "ended": 40}, "return": {"made": 50, "ended": 50}})"));
     CHECK(torus["hops"] == 400);
     CHECK(torus["bytes_per_link"] ==
-          Json::parse(R"({"links": 256, "max": 3145728, "mean": 524288.0, "total": 134217728})"));
+          Document::parse(R"({"links": 256, "max": 3145728, "mean": 524288.0, "total": 134217728})"));
     CHECK(torus["queue"] == 2048);
     CHECK(torus["queue_max"] == 77);
     CHECK(torus["box"] == 512);
     CHECK(torus["copies"] == 5);
     CHECK(json["walks"] == 100 + RAYA_WALKS);
     CHECK(json["steps"] == 100 + RAYA_STEPS);
-    CHECK(json["modelled_ms"] == Json::parse(R"({"compute": 1.0, "messages": 2.0, "processor": 3.0, "links": 4.0,
+    CHECK(json["modelled_ms"] == Document::parse(R"({"compute": 1.0, "messages": 2.0, "processor": 3.0, "links": 4.0,
         "overlapped": 5.0, "stepwise": 6.0})"));
     CHECK(json["load"]["per_pe"].size() == 64);
     for (const char* ring : {"antialias", "communication"}) CHECK_FALSE(json.contains(ring));
     RenderReport ring = report_with_figures();
     ring.torus.reset();
-    CHECK_FALSE(to_json(ring).contains("torus"));
-    for (const char* key : {"antialias", "communication", "modelled_ms"}) CHECK(to_json(ring).contains(key));
+    CHECK(to_json(ring).find("torus") == nullptr);
+    for (const char* key : {"antialias", "communication", "modelled_ms"}) CHECK(to_json(ring).find(key) != nullptr);
 }
 
 // Reflected rays take one multiplication each, ten moves and two branches, and make a packet of 16 words.
@@ -79,8 +77,8 @@ TEST_CASE("a torus's budget is a T805's operations", "[report]") {
     EventCounts events{};
     events[RAYA_REFLECTED] = 3;
     events[RAYA_SPHERE_TESTS] = 2;
-    CHECK(t805_budget_json(events) ==
-          Json::parse(R"({"additions": 22, "multiplications": 21, "divisions": 0, "roots": 0, "moves": 30,
+    CHECK(read_back(t805_budget_json(events)) ==
+          Document::parse(R"({"additions": 22, "multiplications": 21, "divisions": 0, "roots": 0, "moves": 30,
               "packet_words": 48, "branches": 8})"));
 }
 

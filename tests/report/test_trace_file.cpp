@@ -4,15 +4,14 @@
 
 #include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
+#include "tests/document.hpp"
 #include "tests/files/gunzip.hpp"
 #include "tests/report/trace_schema.hpp"
 
 namespace raya {
 namespace {
 
-using Json = nlohmann::json;
-
-Json read(const TraceFile& trace) { return Json::parse(trace.finish(false)); }
+Document read(const TraceFile& trace) { return Document::parse(trace.finish(false)); }
 
 // Slices within a slice, within a slice, ...
 void add_slices(TraceFile& trace, TraceTrack track, SplitMix& random, std::uint64_t start, std::uint64_t end,
@@ -54,7 +53,7 @@ TEST_CASE("what the writer writes keeps the rules", "[report]") {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         CAPTURE(seed);
         const TraceFile trace = random_trace(seed, 1'000'000);
-        const Json json = read(trace);
+        const Document json = read(trace);
         const TraceSchema schema(json);
         CHECK(schema.faults() == std::vector<std::string>{});
         CHECK(schema.flows() >= 5);
@@ -69,7 +68,7 @@ TEST_CASE("events beyond the limit are left out and counted, flows as a whole", 
         const std::size_t all = random_trace(seed, 1'000'000).events(), most = seed % (all + 2);
         CAPTURE(seed, all, most);
         const TraceFile trace = random_trace(seed, most);
-        const Json json = read(trace);
+        const Document json = read(trace);
         CHECK(trace.events() <= most);
         CHECK(trace.events() + trace.left_out() == all);
         CHECK(trace.events() + 1 >= std::min(most, all));  // a flow takes two
@@ -94,7 +93,7 @@ TEST_CASE("a small trace, letter for letter", "[report]") {
 {"ph":"C","name":"u","pid":1,"ts":1.000,"args":{"u":0.5}}
 ],"otherData":{"events":2,"events_left_out":0}}
 )");
-    CHECK(TraceSchema(Json::parse(TraceFile(1).finish(false))).faults().empty());  // nothing at all
+    CHECK(TraceSchema(Document::parse(TraceFile(1).finish(false))).faults().empty());  // nothing at all
 }
 
 TEST_CASE("the writer refuses what readers would misread", "[report]") {
@@ -116,45 +115,45 @@ TEST_CASE("the writer refuses what readers would misread", "[report]") {
 TEST_CASE("the schema finds each broken rule", "[report]") {
     struct Break {
         std::string fault;
-        std::function<void(Json&)> apply;  // to the trace's events
+        std::function<void(Document&)> apply;  // to the trace's events
     };
-    const auto first = [](Json& events, const char* phase) -> Json& {
-        return *std::find_if(events.begin(), events.end(), [&](const Json& e) { return e["ph"] == phase; });
+    const auto first = [](Document& events, const char* phase) -> Document& {
+        return *std::find_if(events.begin(), events.end(), [&](const Document& e) { return e["ph"] == phase; });
     };
-    const Json slice = {{"ph", "X"}, {"name", "x"}, {"pid", 1}, {"tid", 1}, {"ts", 999'999'999.5}, {"dur", 2.0}};
+    const Document slice = {{"ph", "X"}, {"name", "x"}, {"pid", 1}, {"tid", 1}, {"ts", 999'999'999.5}, {"dur", 2.0}};
     const std::vector<Break> breaks = {
-        {"unknown phase", [&](Json& e) { first(e, "X")["ph"] = "Z"; }},
-        {"no name", [&](Json& e) { first(e, "X").erase("name"); }},
-        {"pid is no integer", [&](Json& e) { first(e, "X")["pid"] = "1"; }},
-        {"tid is no integer", [&](Json& e) { first(e, "X")["tid"] = 1.5; }},
-        {"no time ts", [&](Json& e) { first(e, "X")["ts"] = "0"; }},
-        {"no time ts", [&](Json& e) { first(e, "C").erase("ts"); }},
-        {"no time dur", [&](Json& e) { first(e, "X")["dur"] = -1; }},
-        {"args are no object", [&](Json& e) { first(e, "X")["args"] = 5; }},
-        {"a name after other events", [&](Json& e) { std::swap(e.front(), e.back()); }},
-        {"has no process_name", [&](Json& e) { e.erase(0); }},
-        {"has no process_sort_index", [&](Json& e) { e.erase(1); }},
-        {"has no thread_name", [&](Json& e) { e.erase(2); }},
-        {"has no thread_sort_index", [&](Json& e) { e.erase(3); }},
-        {"named twice", [&](Json& e) { e.insert(e.begin(), Json(e.front())); }},
-        {"a name without its value", [&](Json& e) { e[0]["args"].clear(); }},
-        {"a name of the wrong kind", [&](Json& e) { e[1]["args"]["sort_index"] = "1"; }},
-        {"slices cross", [&](Json& e) { e.push_back(slice); }},
-        {"a counter without values", [&](Json& e) { first(e, "C")["args"] = Json::object(); }},
-        {"a counter that is no number", [&](Json& e) { first(e, "C")["args"]["a"] = "much"; }},
-        {"a flow without id", [&](Json& e) { first(e, "s").erase("id"); }},
-        {"binds to the next slice", [&](Json& e) { first(e, "f").erase("bp"); }},
-        {"two of one end", [&](Json& e) { e.push_back(Json(first(e, "s"))); }},
-        {"has no end", [&](Json& e) { first(e, "f")["id"] = 4711; }},
-        {"has no beginning", [&](Json& e) { first(e, "f")["id"] = 4711; }},
-        {"ends do not agree", [&](Json& e) { first(e, "f")["ts"] = 0; }},
-        {"ends do not agree", [&](Json& e) { first(e, "f")["name"] = "g"; }},
-        {"outside all slices", [&](Json& e) { first(e, "f")["ts"] = 1e12; }},
-        {"does not count the events", [&](Json& e) { e.erase(e.size() - 1); }},
+        {"unknown phase", [&](Document& e) { first(e, "X")["ph"] = "Z"; }},
+        {"no name", [&](Document& e) { first(e, "X").erase("name"); }},
+        {"pid is no integer", [&](Document& e) { first(e, "X")["pid"] = "1"; }},
+        {"tid is no integer", [&](Document& e) { first(e, "X")["tid"] = 1.5; }},
+        {"no time ts", [&](Document& e) { first(e, "X")["ts"] = "0"; }},
+        {"no time ts", [&](Document& e) { first(e, "C").erase("ts"); }},
+        {"no time dur", [&](Document& e) { first(e, "X")["dur"] = -1; }},
+        {"args are no object", [&](Document& e) { first(e, "X")["args"] = 5; }},
+        {"a name after other events", [&](Document& e) { std::swap(e.front(), e.back()); }},
+        {"has no process_name", [&](Document& e) { e.erase(0); }},
+        {"has no process_sort_index", [&](Document& e) { e.erase(1); }},
+        {"has no thread_name", [&](Document& e) { e.erase(2); }},
+        {"has no thread_sort_index", [&](Document& e) { e.erase(3); }},
+        {"named twice", [&](Document& e) { e.insert(e.begin(), Document(e.front())); }},
+        {"a name without its value", [&](Document& e) { e[0]["args"].clear(); }},
+        {"a name of the wrong kind", [&](Document& e) { e[1]["args"]["sort_index"] = "1"; }},
+        {"slices cross", [&](Document& e) { e.push_back(slice); }},
+        {"a counter without values", [&](Document& e) { first(e, "C")["args"] = Document::object(); }},
+        {"a counter that is no number", [&](Document& e) { first(e, "C")["args"]["a"] = "much"; }},
+        {"a flow without id", [&](Document& e) { first(e, "s").erase("id"); }},
+        {"binds to the next slice", [&](Document& e) { first(e, "f").erase("bp"); }},
+        {"two of one end", [&](Document& e) { e.push_back(Document(first(e, "s"))); }},
+        {"has no end", [&](Document& e) { first(e, "f")["id"] = 4711; }},
+        {"has no beginning", [&](Document& e) { first(e, "f")["id"] = 4711; }},
+        {"ends do not agree", [&](Document& e) { first(e, "f")["ts"] = 0; }},
+        {"ends do not agree", [&](Document& e) { first(e, "f")["name"] = "g"; }},
+        {"outside all slices", [&](Document& e) { first(e, "f")["ts"] = 1e12; }},
+        {"does not count the events", [&](Document& e) { e.erase(e.size() - 1); }},
     };
     for (const Break& b : breaks) {
         CAPTURE(b.fault);
-        Json json = read(random_trace(3, 1'000'000));
+        Document json = read(random_trace(3, 1'000'000));
         REQUIRE(TraceSchema(json).faults().empty());
         b.apply(json["traceEvents"]);
         std::string all;
@@ -162,7 +161,7 @@ TEST_CASE("the schema finds each broken rule", "[report]") {
         for (const std::string& fault : schema.faults()) all += fault + "\n";
         CHECK_THAT(all, Catch::Contains(b.fault));
     }
-    CHECK(TraceSchema(Json::array()).faults() == std::vector<std::string>{"no traceEvents"});
+    CHECK(TraceSchema(Document::array()).faults() == std::vector<std::string>{"no traceEvents"});
 }
 
 }  // namespace raya

@@ -4,19 +4,19 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "tests/document.hpp"
+
 namespace raya {
 
 /// Looks at a whole trace and says what is wrong with it, in words.
 class TraceSchema {
   public:
-    using Json = nlohmann::json;
     using Track = std::pair<std::int64_t, std::int64_t>;  // pid, tid
 
     struct Slice {
@@ -24,12 +24,12 @@ class TraceSchema {
         std::string name;
     };
 
-    explicit TraceSchema(const Json& trace) {
+    explicit TraceSchema(const Document& trace) {
         if (!trace.is_object() || !trace.contains("traceEvents") || !trace["traceEvents"].is_array()) {
             faults_.emplace_back("no traceEvents");
             return;
         }
-        for (const Json& event : trace["traceEvents"]) look_at(event);
+        for (const Document& event : trace["traceEvents"]) look_at(event);
         check_names();
         for (auto& [track, slices] : slices_) check_nesting(track, slices);
         check_flows();
@@ -57,16 +57,16 @@ class TraceSchema {
         std::string name;
     };
 
-    static std::int64_t ns(const Json& us) { return std::llround(us.get<double>() * 1000); }
-    void fault(const std::string& what, const Json& event) { faults_.push_back(what + ": " + event.dump()); }
+    static std::int64_t ns(const Document& us) { return std::llround(us.get<double>() * 1000); }
+    void fault(const std::string& what, const Document& event) { faults_.push_back(what + ": " + event.dump()); }
 
-    bool is_time(const Json& event, const char* key) {
+    bool is_time(const Document& event, const char* key) {
         const bool right = event.contains(key) && event[key].is_number() && event[key].get<double>() >= 0;
         if (!right) fault(std::string("no time ") + key, event);
         return right;
     }
 
-    void look_at(const Json& event) {
+    void look_at(const Document& event) {
         const std::string phase = event.is_object() ? event.value("ph", "") : "";
         const bool counter = phase == "C";
         if (phase.size() != 1 || std::string("MXCsf").find(phase) == std::string::npos)
@@ -76,7 +76,7 @@ class TraceSchema {
         if (!event.contains("pid") || !event["pid"].is_number_integer()) return fault("pid is no integer", event);
         if (!counter && (!event.contains("tid") || !event["tid"].is_number_integer()))
             return fault("tid is no integer", event);
-        const Track track = {event["pid"], counter ? Json(0) : event["tid"]};
+        const Track track = {event["pid"], counter ? Document(0) : event["tid"]};
         if (phase == "M") return look_at_name(event, track);
         begun_ = true;
         ++events_;
@@ -88,35 +88,35 @@ class TraceSchema {
         if (phase == "s" || phase == "f") look_at_flow(event, track, phase);
     }
 
-    void look_at_name(const Json& event, const Track& track) {
+    void look_at_name(const Document& event, const Track& track) {
         if (begun_) fault("a name after other events", event);
         const std::string what = event["name"];
         const bool sort = what.ends_with("_sort_index"), process = what.starts_with("process_");
         const char* key = sort ? "sort_index" : "name";
         if (!event.contains("args") || !event["args"].contains(key)) return fault("a name without its value", event);
-        const Json& value = event["args"][key];
+        const Document& value = event["args"][key];
         if (sort ? !value.is_number_integer() : !value.is_string() || value == "")
             return fault("a name of the wrong kind", event);
         if (!named_.insert({what, track.first, process ? 0 : track.second}).second) fault("named twice", event);
         if (what == "thread_name") tracks_[track] = value;
     }
 
-    void look_at_slice(const Json& event, const Track& track) {
+    void look_at_slice(const Document& event, const Track& track) {
         if (!is_time(event, "dur")) return;
         if (event.contains("args") && !event["args"].is_object()) fault("args are no object", event);
         const std::int64_t start = ns(event["ts"]);
         slices_[track].push_back({start, start + ns(event["dur"]), event["name"]});
     }
 
-    void look_at_counter(const Json& event) {
+    void look_at_counter(const Document& event) {
         ++counters_;
         if (!event.contains("args") || !event["args"].is_object() || event["args"].empty())
             return fault("a counter without values", event);
-        for (const Json& value : event["args"])
+        for (const Document& value : event["args"])
             if (!value.is_number() || !std::isfinite(value.get<double>())) fault("a counter that is no number", event);
     }
 
-    void look_at_flow(const Json& event, const Track& track, const std::string& phase) {
+    void look_at_flow(const Document& event, const Track& track, const std::string& phase) {
         if (!event.contains("id") || !event["id"].is_number_integer()) return fault("a flow without id", event);
         if (phase == "f" && event.value("bp", "") != "e") fault("a flow's end that binds to the next slice", event);
         auto& ends = phase == "s" ? begins_ : ends_;
@@ -172,9 +172,9 @@ class TraceSchema {
             if (!begins_.contains(id)) faults_.push_back("flow " + std::to_string(id) + " has no beginning");
     }
 
-    void check_counts(const Json& trace) {
-        const Json about = trace.value("otherData", Json());
-        if (!about.is_object() || about.value("events", Json()) != events_ || !about.contains("events_left_out"))
+    void check_counts(const Document& trace) {
+        const Document about = trace.value("otherData", Document());
+        if (!about.is_object() || about.value("events", Document()) != events_ || !about.contains("events_left_out"))
             faults_.emplace_back("otherData does not count the events");
     }
 

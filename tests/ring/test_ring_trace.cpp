@@ -6,14 +6,13 @@
 #include "host/ring/ring_trace.hpp"
 #include "host/ring/ring_work.hpp"
 #include "host/scene/split_mix.hpp"
+#include "tests/document.hpp"
 #include "tests/report/trace_schema.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/scene/random_below.hpp"
 
 namespace raya {
 namespace {
-
-using Json = nlohmann::json;
 
 struct Rendered {
     RingSettings settings;
@@ -27,10 +26,10 @@ Rendered render(const RingCase& c) {
     return r;
 }
 
-Json trace_of(const Rendered& r, std::size_t pes) {
+Document trace_of(const Rendered& r, std::size_t pes) {
     TraceFile trace(10'000'000);
     add_ring_machine(trace, r.settings, r.result, pes);
-    return Json::parse(trace.finish(false));
+    return Document::parse(trace.finish(false));
 }
 
 double modelled_ns(const Rendered& r) {
@@ -59,9 +58,9 @@ std::uint64_t rotations_of(const std::vector<TraceSchema::Slice>& slices) {
 }
 
 // A side that takes one rotation has no rotations within it.
-std::uint64_t single_rotations(const Json& trace) {
+std::uint64_t single_rotations(const Document& trace) {
     std::uint64_t singles = 0;
-    for (const Json& e : trace["traceEvents"])
+    for (const Document& e : trace["traceEvents"])
         singles += e["ph"] == "X" && e["tid"] == 1 && e["args"].value("rotations", 0) == 1;
     return singles;
 }
@@ -79,7 +78,7 @@ TEST_CASE("the traced machine ends when the time model says, with the loads that
         c.antialias.method = static_cast<AntialiasMethod>(i % 3);
         const Rendered r = render(c);
         CAPTURE(i, mapping_text(settings_of(c).mapping));
-        const Json json = trace_of(r, 24);
+        const Document json = trace_of(r, 24);
         const TraceSchema schema(json);
         CHECK(schema.faults() == std::vector<std::string>{});
         CHECK(schema.tracks().size() == 25);
@@ -103,8 +102,8 @@ TEST_CASE("the counter of live rays comes down from all PEs to none", "[ring]") 
     const Rendered r = render({.width = 40, .height = 8, .pes = 40, .offset = 0, .machine = "spa", .lanes = 4});
     double last = 41;
     std::size_t points = 0;
-    const Json json = trace_of(r, 4);
-    for (const Json& e : json["traceEvents"]) {
+    const Document json = trace_of(r, 4);
+    for (const Document& e : json["traceEvents"]) {
         if (e["name"] != "live rays") continue;
         CHECK(e["args"]["rays"] <= last);
         last = e["args"]["rays"];
@@ -119,7 +118,7 @@ TEST_CASE("a machine without rates, or without tracks, is left out and says so",
     CHECK(trace_of(r, 0)["otherData"]["machine"].get<std::string>().starts_with("left out"));
     CHECK(trace_of(r, 3)["otherData"]["machine"]["pes"] == 8);
     r.settings.machine.cycle_ns.reset();
-    const Json json = trace_of(r, 8);
+    const Document json = trace_of(r, 8);
     CHECK(json["traceEvents"].empty());
     CHECK_THAT(json["otherData"]["machine"].get<std::string>(), Catch::Contains("rates are not known"));
 }

@@ -1,5 +1,5 @@
 // The promise of scenes/README.md: the main scene is as uneven as the paper's, and by the figures printed there.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // The best offset: what the study recommends is the least of all that it lists.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <catch2/catch.hpp>
 #include <limits>
@@ -10,6 +10,7 @@
 #include "host/study/offset_times.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
+#include "tests/document.hpp"
 #include "tests/study/study_cases.hpp"
 
 namespace raya {
@@ -88,12 +89,12 @@ TEST_CASE("best-offset takes the scene's own size, and centre where none is name
     Laboratory lab(session, 0);
     LabelledScene scene = embedded_scene("spheres");
     scene.scene.view.width = scene.scene.view.height = 40;
-    CHECK(study_best_offset(lab, {scene}).settings["scenes"][0]["size"] == 40);
+    CHECK(read_back(study_best_offset(lab, {scene}).settings)["scenes"][0]["size"] == 40);
     Laboratory small(session, 16);
     const StudyPage page = study_best_offset(small, {});
     check_page(page);
-    CHECK(page.settings["scenes"][0]["scene"] == "centre");
-    CHECK(page.settings["scenes"][0]["size"] == 16);
+    CHECK(read_back(page.settings)["scenes"][0]["scene"] == "centre");
+    CHECK(read_back(page.settings)["scenes"][0]["size"] == 16);
 }
 
 }  // namespace

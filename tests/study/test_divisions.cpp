@@ -1,5 +1,5 @@
 // The study of divisions: its shapes, what it concludes from made-up counts, and counts that hold of any grid.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <random>
 

@@ -1,5 +1,5 @@
 // The studies of figures 7, 8, 12 and 13 against plain sums, and the paper's figures against arithmetic by hand.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,6 +9,7 @@
 #include "host/study/paper.hpp"
 #include "host/study/studies.hpp"
 #include "kernels/shared/mapping.h"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
@@ -147,8 +148,8 @@ TEST_CASE("a study takes the scene that is given, and calls only its own calibra
     check_loads_page(fig7, lab.costs(own, 24).trace, true);
     check_imbalance_page(fig8, lab.costs(own, 24).trace, true);
     for (const StudyPage& page : {fig7, fig8}) {
-        CHECK(page.settings["scene"] == "mine.nff");
-        CHECK(page.settings["size"] == 24);
+        CHECK(read_back(page.settings)["scene"] == "mine.nff");
+        CHECK(read_back(page.settings)["size"] == 24);
         CHECK(page.comparison("u(0)").remark.empty());
     }
     CHECK(study_fig8(lab, {}).comparison("u(0)").remark.empty());  // centre.nff, but not of the size calibrated on
@@ -159,8 +160,8 @@ TEST_CASE("figure 8 at the paper's size is beside the paper's figures", "[study]
     Laboratory lab(session, 0);
     const StudyPage page = study_fig8(lab, {});
     check_imbalance_page(page, lab.costs(embedded_scene("centre"), 256).trace, true);
-    CHECK(page.settings["size"] == 256);
-    CHECK(page.settings["pes"] == 256);
+    CHECK(read_back(page.settings)["size"] == 256);
+    CHECK(read_back(page.settings)["pes"] == 256);
     CHECK(page.comparison("u(0)").paper.value() == Approx(1.580).margin(0.0005));
     CHECK(page.comparison("u(16)").paper.value() == Approx(0.118).margin(0.0005));
     CHECK(page.comparison("best p of 0..16").paper == 16.0);

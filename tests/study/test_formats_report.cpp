@@ -1,10 +1,10 @@
 // What a formats study writes and says, on made-up figures.
 #include <catch2/catch.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "host/study/formats_report.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
@@ -97,7 +97,7 @@ TEST_CASE("infinities are written as inf and -inf everywhere", "[study]") {
     FormatsStudy study = made_up();
     study.scenes[0].rows[0].difference = {kInfinity, 0, 0, 0};
     study.scenes[0].rows[1].difference = {-kInfinity, kInfinity, 7, 0.07};
-    const auto json = nlohmann::json::parse(formats_json(study).dump());
+    const auto json = Document::parse(formats_json(study).dump());
     CHECK(json["scenes"][0]["formats"][0]["psnr_db"] == "inf");
     CHECK(json["scenes"][0]["formats"][1]["psnr_db"] == "-inf");
     CHECK(json["scenes"][0]["formats"][1]["largest_error"] == "inf");

@@ -1,5 +1,5 @@
 // The study of uniform grids beside Havran & Sixta's: means of made-up counts, what stands beside what, SPD's scenes.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <random>
 

@@ -10,6 +10,7 @@
 
 #include "host/error.hpp"
 #include "host/study/page_writer.hpp"
+#include "tests/document.hpp"
 #include "tests/files/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
@@ -114,24 +115,24 @@ TEST_CASE("any cell comes back from CSV to the bit", "[page]") {
 }
 
 TEST_CASE("JSON has everything, with strings for what is infinite and null for what is not there", "[page]") {
-    const auto json = nlohmann::json::parse(page_json(small_page()).dump());
+    const auto json = Document::parse(page_json(small_page()).dump());
     CHECK(json["study"] == "small");
     CHECK(json["question"] == "Does it add up?");
     CHECK(json["method"].size() == 2);
     CHECK(json["settings"]["pes"] == 256);
     CHECK(json["findings"][1] == "Nearly.");
     const auto& compared = json["comparisons"];
-    CHECK(compared[0] == nlohmann::json{{"what", "u(0)"},
-                                        {"unit", ""},
-                                        {"paper", 1.5},
-                                        {"ours", 1.575},
-                                        {"ratio", 1.575 / 1.5},
-                                        {"remark", "calibrated"}});
+    CHECK(compared[0] == Document{{"what", "u(0)"},
+                                  {"unit", ""},
+                                  {"paper", 1.5},
+                                  {"ours", 1.575},
+                                  {"ratio", 1.575 / 1.5},
+                                  {"remark", "calibrated"}});
     CHECK(compared[2]["paper"].is_null());
     CHECK(compared[2]["ratio"].is_null());
     CHECK(compared[3]["paper"] == 0);
     CHECK(compared[3]["ratio"].is_null());
-    CHECK(json["tables"][0]["rows"][0] == nlohmann::json::parse("[0, 0.3333333333333333, \"a|b \\\"c\\\"\"]"));
+    CHECK(json["tables"][0]["rows"][0] == Document::parse("[0, 0.3333333333333333, \"a|b \\\"c\\\"\"]"));
     CHECK(json["tables"][0]["rows"][1][1] == "inf");
     CHECK(json["tables"][1]["rows"].size() == 2);
     const auto& plot = json["plots"][0];
@@ -139,7 +140,7 @@ TEST_CASE("JSON has everything, with strings for what is infinite and null for w
     CHECK(plot["log_x"] == false);
     CHECK(plot["log_y"] == true);
     CHECK(plot["x_label"] == "offset p (pixels)");
-    CHECK(plot["series"][0]["y"] == nlohmann::json::parse("[1.5, 0.5, \"inf\"]"));
+    CHECK(plot["series"][0]["y"] == Document::parse("[1.5, 0.5, \"inf\"]"));
     const std::vector<std::string> styles = {"line", "steps", "points", "paper"};
     for (std::size_t i = 0; i < styles.size(); ++i) CHECK(plot["series"][i]["style"] == styles[i]);
 }
@@ -170,7 +171,7 @@ TEST_CASE("write_page writes page, JSON and tables, and plots, and nothing else"
     CHECK(contents_of(folder / "small.md") == page_markdown(page, {true, {}}));
     CHECK(contents_of(folder / "small.csv") == table_csv(page.tables[0]));
     CHECK(contents_of(folder / "small-long.csv") == table_csv(page.tables[1]));
-    CHECK(nlohmann::ordered_json::parse(contents_of(folder / "small.json")) == page_json(page));
+    CHECK(Document::parse(contents_of(folder / "small.json")) == read_back(page_json(page)));
 }
 
 TEST_CASE("a label in an encoding that JSON does not know does not stop the study", "[page]") {
@@ -179,7 +180,7 @@ TEST_CASE("a label in an encoding that JSON does not know does not stop the stud
     page.plots.clear();
     page.title = "f\xfcr";
     write_page(folder.path(), page);
-    CHECK(nlohmann::json::parse(contents_of(folder / "small.json"))["title"] == "f\xef\xbf\xbdr");
+    CHECK(Document::parse(contents_of(folder / "small.json"))["title"] == "f\xef\xbf\xbdr");
 }
 
 TEST_CASE("a page that contradicts itself is refused before anything is written", "[page]") {

@@ -5,6 +5,7 @@
 #include "host/study/arrays.hpp"
 #include "host/study/static_vs_dynamic.hpp"
 #include "host/study/studies.hpp"
+#include "tests/document.hpp"
 #include "tests/ring/small_mapping.hpp"
 #include "tests/study/study_cases.hpp"
 
@@ -167,14 +168,14 @@ TEST_CASE("the study of static and dynamic distribution is whole", "[study]") {
     Laboratory lab(session, 32);
     const StudyPage page = study_static_vs_dynamic(lab, {});
     check_page(page);
-    CHECK(page.settings["pes"] == std::vector<int>{128, 256, 512, 1024});
-    CHECK(page.settings["scenes"].size() == 3);
+    CHECK(read_back(page.settings)["pes"] == std::vector<int>{128, 256, 512, 1024});
+    CHECK(read_back(page.settings)["scenes"].size() == 3);
     CHECK(page.plots.size() == 6);
     const auto count = strategies(32, 128, 0).size();
     CHECK(page.table("static-vs-dynamic").rows.size() == 3 * 4 * count);
     CHECK(page.table("static-vs-dynamic-1").rows.size() == count + 1);
     const StudyPage one = study_static_vs_dynamic(lab, {embedded_scene("glass")});
-    CHECK(one.settings["scenes"] == std::vector<std::string>{"glass"});
+    CHECK(read_back(one.settings)["scenes"] == std::vector<std::string>{"glass"});
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // raya study, as a user runs it: three files that agree, and what is refused.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
 
 namespace raya {
 namespace {
@@ -22,7 +22,7 @@ std::vector<Words> csv_lines(const std::string& text) {
     return rows;
 }
 
-void check_csv_row(const Words& csv, const nlohmann::json& scene, const nlohmann::json& row) {
+void check_csv_row(const Words& csv, const Document& scene, const Document& row) {
     REQUIRE(csv.size() == 12);
     CHECK(csv[0] == scene["scene"]);
     CHECK(csv[1] == row["format"]);
@@ -38,7 +38,7 @@ void check_csv_row(const Words& csv, const nlohmann::json& scene, const nlohmann
     CHECK(std::stod(csv[11]) == row["measured"]["ratio_to_fp32"]);
 }
 
-std::string markdown_row(const nlohmann::json& row) {
+std::string markdown_row(const Document& row) {
     return fmt::format("| {} | {:.2f} | {:.4f} | {:.3f} | {:.2f} | {:.2f} |\n", row["format"].get<std::string>(),
                        row["psnr_db"].get<double>(), row["largest_error"].get<double>(),
                        100 * row["share_over"].get<double>(), 1e3 * row["measured"]["kernel_s"].get<double>(),
@@ -55,12 +55,12 @@ TEST_CASE("the three files of a formats study are complete and agree", "[study]"
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
     CHECK(std::count(run.out.begin(), run.out.end(), '\n') == 4);  // a header, fp32, e6m13t, e6m15
-    const auto json = nlohmann::json::parse(file_contents(out / "formats.json"));
+    const auto json = Document::parse(file_contents(out / "formats.json"));
     const auto csv = csv_lines(file_contents(out / "formats.csv"));
     const std::string markdown = file_contents(out / "formats.md");
     CHECK(std::distance(std::filesystem::directory_iterator(out), std::filesystem::directory_iterator()) == 3);
 
-    CHECK(json["image"] == nlohmann::json{{"width", 16}, {"height", 12}});
+    CHECK(json["image"] == Document{{"width", 16}, {"height", 12}});
     CHECK(json["machine"]["name"] == "grande");
     CHECK(json["machine"]["pes"] == 16);
     CHECK(json["device"]["lanes"] == 1);

@@ -1,7 +1,7 @@
 // Renders on the torus machine in a line, for tests. A device is required: without one these tests fail, they are not
 // skipped.
 #pragma once
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdint>
 #include <string>

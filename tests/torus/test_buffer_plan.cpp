@@ -1,5 +1,5 @@
 // Queue and boxes of a node beside its words: tight fits to the byte, and refusals with figures and remedies.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <catch2/catch.hpp>
 #include <cmath>

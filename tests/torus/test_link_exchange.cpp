@@ -1,5 +1,5 @@
 // Links: every packet that a node puts into an outbox comes to the node at the other end of that link, once.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // What the nodes of a torus hold, word by word beside the job, for scenes and lists drawn by lot.
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <vector>
 

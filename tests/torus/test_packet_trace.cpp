@@ -1,5 +1,5 @@
 // The trace of packets: rows, and the numbers of rays and parents, against names that are made while a ray tree grows.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>

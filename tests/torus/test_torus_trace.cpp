@@ -6,19 +6,19 @@
 #include "host/torus/torus_time.hpp"
 #include "host/torus/torus_trace.hpp"
 #include "host/torus/torus_work.hpp"
+#include "tests/document.hpp"
 #include "tests/report/trace_schema.hpp"
 #include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {
 
-using Json = nlohmann::json;
 using Slices = std::vector<TraceSchema::Slice>;
 
 struct Traced {
     TorusSettings settings;
     TorusResult result;
-    Json trace;
+    Document trace;
     std::uint64_t packets = 0;
 };
 
@@ -36,7 +36,7 @@ Traced render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
                        [&](const SuperstepDetail& step) { seen.add_superstep(step); });
     TraceFile trace(10'000'000);
     seen.add_to(trace, t.result, nodes);
-    t.trace = Json::parse(trace.finish(false));
+    t.trace = Document::parse(trace.finish(false));
     return t;
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("the traced torus ends at the stepwise time, its nodes compute what wa
 TEST_CASE("counters say what each superstep had", "[torus]") {
     const Traced t = render(random_view_scene(27), {.lanes = 4}, 3);
     std::vector<double> live, busiest;
-    for (const Json& e : t.trace["traceEvents"]) {
+    for (const Document& e : t.trace["traceEvents"]) {
         if (e["name"] == "live rays") live.push_back(e["args"]["packets"]);
         if (e["name"] == "link words") busiest.push_back(e["args"]["busiest"]);
     }
@@ -136,12 +136,12 @@ TEST_CASE("the sample of packets has its size, and any packet may be in it", "[t
     }
     TraceFile trace(10'000'000);
     seen.add_to(trace, result, 2);
-    const Json json = Json::parse(trace.finish(false));
+    const Document json = Document::parse(trace.finish(false));
     const TraceSchema schema(json);
     CHECK(schema.faults() == std::vector<std::string>{});
     CHECK(schema.flows() == TorusTrace::kMostPackets);
     std::vector<int> of_quarter(4);
-    for (const Json& e : json["traceEvents"])
+    for (const Document& e : json["traceEvents"])
         if (e["ph"] == "s")
             ++of_quarter[std::min<std::size_t>(3, static_cast<std::size_t>(e["ts"].get<double>() / 4 / 25))];
     for (const int count : of_quarter) CHECK(std::abs(count - 5000) < 400);  // 6 standard deviations

@@ -1,0 +1,13 @@
+// A JSON document as another program reads it: what tests look at, whatever host/files/json.hpp makes of it.
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "host/files/json.hpp"
+
+namespace raya {
+
+using Document = nlohmann::ordered_json;  // two are equal only if their members stand in the same order
+
+inline Document read_back(const Json& json) { return Document::parse(json.dump()); }
+
+}  // namespace raya
