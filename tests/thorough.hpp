@@ -1,5 +1,6 @@
 // How much a test looks at: what one waits for, or everything.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <initializer_list>
@@ -21,11 +22,12 @@ std::vector<T> quick(std::size_t few, std::initializer_list<T> all) {
     return {all.begin(), thorough() ? all.end() : all.begin() + few};
 }
 
-/// The same of a container.
+/// The same of a container, which may have fewer.
 template <class Container>
 auto quick_of(std::size_t few, const Container& all) {
     using std::begin;
-    return std::vector(begin(all), thorough() ? std::end(all) : begin(all) + few);
+    using std::size;
+    return std::vector(begin(all), begin(all) + (thorough() ? size(all) : std::min(few, size(all))));
 }
 
 /// So many random cases.

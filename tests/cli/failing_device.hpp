@@ -17,7 +17,7 @@ inline constexpr bool kSanitized = false;
 inline Surroundings failing_device(const std::string& fault) {
     return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
                           {"RAYA_FAULT", fault},
-                          {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
+                          {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0:handle_segv=0"}}};
 }
 
 }  // namespace raya

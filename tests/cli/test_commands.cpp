@@ -180,7 +180,7 @@ TEST_CASE("bench prints a row for each format and number of lanes, one image a f
     }
     CHECK(lines_that_start_with(out, "Gop/s").size() == 1);
     CHECK(lines_that_start_with(
-              succeed({"bench", "--samples", "1", "--size", "32", "--lanes", "4", "--format", "e5m10t"}).out, "e5m10t")
+              succeed({"bench", "--samples", "1", "--size", "32", "--lanes", "1", "--format", "e5m10t"}).out, "e5m10t")
               .size() == 1);
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tests/cli/refusals.hpp"
+#include "tests/thorough.hpp"
 #include "tests/paths.h"
 
 namespace raya {
@@ -17,7 +18,7 @@ struct Row {
 
 void check_render_options(const std::vector<Row>& rows) {
     const ScratchFolder outputs;
-    for (const Row& row : rows)
+    for (const Row& row : quick_of(3, rows))
         check_refused(outputs, render_into(outputs, scene_file("planes"), row.options), 2, row.message);
 }
 

@@ -2,6 +2,7 @@
 #include "host/scene/nff_reader.hpp"
 #include "kernels/shared/traffic.h"
 #include "tests/cli/refusals.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -14,7 +15,7 @@ struct Row {
 /// A render of a small picture on `machine`, which must be refused with every message.
 void check_refused_on(const std::string& machine, const std::vector<Row>& rows) {
     const ScratchFolder outputs;
-    for (const Row& row : rows) {
+    for (const Row& row : quick_of(3, rows)) {
         Words arguments = {"render", scene_file("planes"), "-o", outputs / "x.png", "--machine", machine};
         arguments.insert(arguments.end(), row.options.begin(), row.options.end());
         check_refused(outputs, arguments, 2, row.message);

@@ -41,7 +41,7 @@ Scene hard_spheres(std::uint32_t seed) {
 }  // namespace
 
 TEST_CASE("the sphere filter changes no bit of the image and no count", "[ring]") {
-    for (const char* format : quick(2, {"spa22", "e6m10", "e8m21", "e7m12", "e6m15t"}))
+    for (const char* format : quick(1, {"spa22", "e6m10", "e8m21", "e7m12", "e6m15t"}))
         for (const std::uint32_t seed : quick(1, {1u, 2u, 3u})) {
             CAPTURE(format, seed);
             const Scene scene = hard_spheres(seed);
