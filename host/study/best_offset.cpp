@@ -2,9 +2,9 @@
 #include <span>
 
 #include "host/study/arrays.hpp"
-#include "host/study/offset_times.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
+#include "host/study/spa_times.hpp"
 #include "host/study/studies.hpp"
 
 namespace raya {

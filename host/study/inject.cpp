@@ -10,16 +10,12 @@ namespace {
 constexpr double kPart = 1.1;  // times as long: more than this and the two ways have parted
 
 // One machine, with one way of making primary rays.
-struct Row {
+struct Row : TorusRun {
     std::string way;  // "root" or "all"
-    TorusRun run;
 
-    std::uint32_t nodes() const { return run.nodes(); }
-    double overlapped_ms() const { return run.time.overlapped_ms; }
-    double stepwise_ms() const { return run.time.stepwise_ms; }
-    std::size_t supersteps() const { return run.result.supersteps.size(); }
-    double root_share() const { return 100 * (run.root_ms() / overlapped_ms()); }  // %
-    bool waits_for_root() const { return run.root_ms() >= overlapped_ms(); }
+    std::uint64_t queue_max() const { return result.queue_max; }
+    double root_share() const { return 100 * (root_ms() / overlapped_ms()); }  // %
+    bool waits_for_root() const { return root_ms() >= overlapped_ms(); }
 };
 using Rows = std::vector<Row>;
 
@@ -28,7 +24,7 @@ Rows rows_of(Session& session, const LabelledScene& scene, std::uint32_t size, s
     for (std::uint32_t nodes = 1; nodes <= most; nodes *= 2)
         for (const Injection way : {Injection::kRoot, Injection::kAll}) {
             TorusPlan plan{.nodes = near_cube(nodes), .voxels = near_cube(nodes), .inject = way};
-            rows.push_back({way == Injection::kRoot ? "root" : "all", run_on_torus(session, scene, size, plan)});
+            rows.push_back({run_on_torus(session, scene, size, plan), way == Injection::kRoot ? "root" : "all"});
         }
     return rows;
 }
@@ -44,13 +40,13 @@ StudyTable table_of_rows(const Rows& rows) {
                      {"supersteps", &Row::supersteps},
                      {"overlapped", &Row::overlapped_ms, "ms"},
                      {"stepwise", &Row::stepwise_ms, "ms"},
-                     {"the root's processor", [](const Row& r) { return r.run.root_processor_ms; }, "ms"},
-                     {"the root's busiest link", [](const Row& r) { return r.run.root_link_ms; }, "ms"},
+                     {"the root's processor", &Row::root_processor_ms, "ms"},
+                     {"the root's busiest link", &Row::root_link_ms, "ms"},
                      {"root / overlapped", &Row::root_share, "%"},
-                     {"busiest link", [](const Row& r) { return r.run.busiest_link_bytes(); }, "bytes"},
-                     {"packets", [](const Row& r) { return r.run.packets(); }},
-                     {"hops a packet", [](const Row& r) { return r.run.hops_per_packet(); }},
-                     {"most packets in a queue", [](const Row& r) { return r.run.result.queue_max; }}});
+                     {"busiest link", &Row::busiest_link_bytes, "bytes"},
+                     {"packets", &Row::packets},
+                     {"hops a packet", &Row::hops_per_packet},
+                     {"most packets in a queue", &Row::queue_max}});
 }
 
 std::vector<StudyPlot> plots_of(const Rows& rows) {

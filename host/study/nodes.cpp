@@ -12,30 +12,22 @@ constexpr std::uint32_t kQueue = 256;
 constexpr double kHalf = 0.5;  // an efficiency
 
 // A machine of a series.
-struct Row {
+struct Row : TorusRun {
     std::string scene;
-    bool fixed;  // the same voxels on all machines of the series, else one a node
-    TorusRun run;
+    bool fixed;          // the same voxels on all machines of the series, else one a node
     TorusTime one = {};  // of the series' one node
 
-    std::uint32_t nodes() const { return run.nodes(); }
-    std::string links() const { return links_name(run.plan.links); }
-    std::string voxels() const { return fixed ? sides_text(run.plan.voxels) : "one a node"; }
-    double overlapped_ms() const { return run.time.overlapped_ms; }
-    double overlapped() const { return one.overlapped_ms / run.time.overlapped_ms; }  // speed-up
-    double stepwise() const { return one.stepwise_ms / run.time.stepwise_ms; }
+    std::string links() const { return links_name(plan.links); }
+    std::string voxels() const { return fixed ? sides_text(plan.voxels) : "one a node"; }
+    double overlapped() const { return one.overlapped_ms / overlapped_ms(); }  // speed-up
+    double stepwise() const { return one.stepwise_ms / stepwise_ms(); }
     double efficiency() const { return overlapped() / nodes(); }
-    double hops() const { return run.hops_per_packet(); }
-    double imbalance() const { return run.result.load.imbalance; }
-    double balance() const { return run.result.load.efficiency; }
-    std::size_t supersteps() const { return run.result.supersteps.size(); }
-    std::uint64_t link_bytes() const { return run.busiest_link_bytes(); }
-    double tests() const { return run.tests_per_ray(); }
+    double balance() const { return result.load.efficiency; }
 
     const char* waits_for() const {
-        if (run.root_link_ms >= overlapped_ms()) return "the root's link";
-        if (run.root_processor_ms >= overlapped_ms()) return nodes() > 1 ? "the root" : "its one node";
-        return run.time.links_ms >= overlapped_ms() ? "a link" : "a node";
+        if (root_link_ms >= overlapped_ms()) return "the root's link";
+        if (root_processor_ms >= overlapped_ms()) return nodes() > 1 ? "the root" : "its one node";
+        return time.links_ms >= overlapped_ms() ? "a link" : "a node";
     }
 };
 
@@ -58,11 +50,10 @@ Series series_of(Session& session, const LabelledScene& scene, const NodesSettin
                              .links = links,
                              .queue = kQueue};
         const auto same = std::ranges::find_if(known, [&](const Row& row) {
-            const TorusPlan& other = row.run.plan;
-            return other.nodes == plan.nodes && other.voxels == plan.voxels && other.links == links;
+            return row.plan.nodes == plan.nodes && row.plan.voxels == plan.voxels && row.plan.links == links;
         });
-        Row row{scene.label, fixed, same != known.end() ? same->run : run_on_torus(session, scene, s.size, plan)};
-        row.one = series.empty() ? row.run.time : series.front().one;
+        Row row{same != known.end() ? TorusRun(*same) : run_on_torus(session, scene, s.size, plan), scene.label, fixed};
+        row.one = series.empty() ? row.time : series.front().one;
         series.push_back(std::move(row));
     }
     return series;
@@ -81,16 +72,16 @@ StudyTable table_of_machines(const Series& all) {
                      {"links", &Row::links},
                      {"nodes", &Row::nodes},
                      {"overlapped", &Row::overlapped_ms, "ms"},
-                     {"stepwise", [](const Row& row) { return row.run.time.stepwise_ms; }, "ms"},
+                     {"stepwise", &Row::stepwise_ms, "ms"},
                      {"speed-up, overlapped", &Row::overlapped},
                      {"speed-up, stepwise", &Row::stepwise},
                      {"efficiency, overlapped", &Row::efficiency},
                      {"u", &Row::imbalance},
-                     {"hops a packet", &Row::hops},
+                     {"hops a packet", &Row::hops_per_packet},
                      {"supersteps", &Row::supersteps},
-                     {"busiest link", &Row::link_bytes, "bytes"},
-                     {"tests a ray", &Row::tests},
-                     {"steps a ray", [](const Row& row) { return row.run.steps_per_ray(); }},
+                     {"busiest link", &Row::busiest_link_bytes, "bytes"},
+                     {"tests a ray", &Row::tests_per_ray},
+                     {"steps a ray", &Row::steps_per_ray},
                      {"waits for", &Row::waits_for}});
 }
 
@@ -117,7 +108,8 @@ std::vector<StudyPlot> plots_of(const std::vector<SceneSeries>& scenes) {
     for (const auto& [three, two, fixed] : scenes) {
         plots.push_back(speedup_plot(fixed, three, plots.size() + 1));
         for (const Series& s : {three, two})
-            hops.series.push_back(line(s.front().scene + ", " + s.front().links(), s, &Row::nodes, &Row::hops));
+            hops.series.push_back(
+                line(s.front().scene + ", " + s.front().links(), s, &Row::nodes, &Row::hops_per_packet));
         balance.series.push_back(line(three.front().scene + ", a voxel a node", three, &Row::nodes, &Row::balance));
         balance.series.push_back(
             line(fixed.front().scene + ", " + fixed.front().voxels(), fixed, &Row::nodes, &Row::balance));
@@ -141,8 +133,9 @@ std::string finding_of_voxels(const Series& one, const Series& fixed) {
     return fmt::format(
         "{}, one voxel a node: {} nodes are {:.0f} times as fast as one, but that one has no grid: {:.1f} times as "
         "many tests a ray, {:.1f} beside {:.1f}. With one node and {} voxels it is {:.0f} times as fast already.",
-        first.scene, best.nodes(), best.overlapped(), first.tests() / std::max(1e-9, best.tests()), first.tests(),
-        best.tests(), fixed.front().voxels(), first.overlapped_ms() / fixed.front().overlapped_ms());
+        first.scene, best.nodes(), best.overlapped(), first.tests_per_ray() / std::max(1e-9, best.tests_per_ray()),
+        first.tests_per_ray(), best.tests_per_ray(), fixed.front().voxels(),
+        first.overlapped_ms() / fixed.front().overlapped_ms());
 }
 
 std::string finding_of_links(const Series& three, const Series& two) {
@@ -154,9 +147,9 @@ std::string finding_of_links(const Series& three, const Series& two) {
         "{}, 2-D against 3-D torus with {} nodes: {:.2f} hops a packet for {:.2f}, {} supersteps for {}, {:.2f} times "
         "the bytes over the busiest link; overlapped it takes {:.2f} times as long, of all numbers of nodes {:.2f} to "
         "{:.2f}.",
-        a.scene, a.nodes(), b.hops(), a.hops(), b.supersteps(), a.supersteps(),
-        static_cast<double>(b.link_bytes()) / std::max(1.0, static_cast<double>(a.link_bytes())), ratios.back(),
-        std::ranges::min(ratios), std::ranges::max(ratios));
+        a.scene, a.nodes(), b.hops_per_packet(), a.hops_per_packet(), b.supersteps(), a.supersteps(),
+        static_cast<double>(b.busiest_link_bytes()) / std::max(1.0, static_cast<double>(a.busiest_link_bytes())),
+        ratios.back(), std::ranges::min(ratios), std::ranges::max(ratios));
 }
 
 std::string finding_of_balance(const Series& one, const Series& fixed) {
@@ -165,7 +158,7 @@ std::string finding_of_balance(const Series& one, const Series& fixed) {
         return found == s.end() ? s.back() : *found;
     };
     const Row &a = of_64(one), &b = of_64(fixed);
-    const Divisions& voxels = b.run.plan.voxels;
+    const Divisions& voxels = b.plan.voxels;
     return fmt::format(
         "{}, balance: u of {} nodes is {:.2f} with a voxel each and {:.2f} with {} voxels laid out cyclically, {} a "
         "node; of {} nodes {:.2f}.",

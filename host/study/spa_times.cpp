@@ -2,7 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
 #include "host/machine/does_not_fit.hpp"
+#include "host/ring/route.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"
 #include "host/study/paper.hpp"
@@ -23,6 +28,19 @@ SpaRun run_of(const RingSettings& settings, RingResult result) {
     run.recomputed = result.recomputed;
     return run;
 }
+
+constexpr std::uint64_t kPixelWords = 3;
+
+// One pass over the image: the imbalance of each offset.
+struct Pass {
+    double mean;  // cycles of a PE
+    std::vector<double> imbalance;
+
+    Pass(const CostImage& image, std::uint32_t pes, const std::vector<std::uint32_t>& offsets)
+        : mean(static_cast<double>(total_cycles(image)) / pes),
+          imbalance(imbalance_of_offsets(image, pes, RAYA_FOLD_CYCLIC, offsets)) {}
+    double largest_ms(std::uint32_t offset) const { return spa_ms(mean * (1 + imbalance[offset])); }
+};
 
 }  // namespace
 
@@ -53,5 +71,69 @@ double fitted_factor(const CostImage& trace) {
 }
 
 std::string offset_name(std::uint32_t offset) { return fmt::format("p = {}", offset); }
+
+std::uint64_t neighbour_rotations(const raya_mapping& mapping) {
+    raya_mapping short_one = mapping;
+    // With slots of which no two PEs share one, the owner follows from the slot alone, and two rows show all pairs of
+    // neighbouring slots that any number of rows does: for p > 0 their left borders lie in two slots, for p = 0 all in
+    // one.
+    if (raya_has_slots(mapping) && mapping.pes <= mapping.width) short_one.height = std::min(mapping.height, 2u);
+    std::uint64_t turns = 0;
+    for (raya_u32 side = 0; side < RAYA_SIDES; ++side)
+        for (const Leg& leg : shortest_route(mapping.pes, neighbour_distances(short_one, side))) turns += leg.turns();
+    return turns;
+}
+
+std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, AntialiasMethod method) {
+    const std::uint32_t width = costs.trace.width, height = costs.trace.height;
+    const Machine& spa = machine_named("spa");
+    std::vector<std::uint32_t> offsets(width);
+    std::iota(offsets.begin(), offsets.end(), 0u);
+    const Pass first(costs.trace, pes, offsets);
+    std::optional<Pass> again;
+    if (method == AntialiasMethod::kSupersample) again.emplace(costs.supersample, pes, offsets);
+    std::vector<OffsetTime> times;
+    for (const std::uint32_t p : offsets) {
+        OffsetTime time{.offset = p, .imbalance = first.imbalance[p], .trace_ms = first.largest_ms(p)};
+        if (again) time.supersample_ms = again->largest_ms(p);
+        if (method != AntialiasMethod::kNone) {
+            const raya_mapping mapping = cyclic(width, height, pes, p);
+            const std::uint32_t share = largest_share(mapping);
+            const SmoothingCycles cycles = smoothing_cycles(method, share);
+            time.smooth_ms = spa_ms(static_cast<double>(cycles.filter + cycles.compare));
+            time.rotations = neighbour_rotations(mapping);
+            const double words_ms = 1e3 * static_cast<double>(kPixelWords * share) / spa.link_words_per_s.value();
+            time.ring_ms = static_cast<double>(time.rotations) * (spa.rotation_sync_ms.value() + words_ms);
+        }
+        times.push_back(time);
+    }
+    return times;
+}
+
+SmoothingRuns smoothing_runs(Laboratory& lab, const Scenes& scenes, AntialiasMethod method) {
+    SmoothingRuns study{.scene = one_of(scenes), .size = lab.size(256)};
+    Costs costs;
+    for (const std::uint32_t p : {0u, 8u, 16u}) {
+        const std::uint32_t offset = p % study.size;
+        const SpaRun run = run_on_spa(lab.session(), study.scene, study.size, study.size, offset, method);
+        study.factor = fitted_factor(run.cost.front());
+        study.recomputed = static_cast<double>(run.recomputed) / static_cast<double>(run.pixels);
+        study.rows.push_back({offset, run.communication.rotations, spa_time(run), spa_time(run, study.factor),
+                              run.phases.front(), run.phases.back()});
+        costs.trace = run.cost.front();
+        costs.supersample = run.cost.back();
+    }
+    study.times = offset_times(costs, study.size, method);
+    return study;
+}
+
+std::uint32_t usual_size(const Scene& scene) {
+    constexpr std::uint64_t kMostTests = 1u << 30;  // pixels x objects
+    constexpr std::uint32_t kOther = 256, kLeast = 64;
+    const bool square = scene.view.width == scene.view.height && scene.view.width >= 16 && scene.view.width <= 4096;
+    std::uint32_t size = square ? static_cast<std::uint32_t>(scene.view.width) : kOther;
+    while (size / 2 >= kLeast && std::uint64_t{size} * size * scene.object_count() > kMostTests) size /= 2;
+    return size;
+}
 
 }  // namespace raya

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <span>
 
-#include "host/study/offset_times.hpp"
 #include "host/study/paper.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
+#include "host/study/spa_times.hpp"
 #include "host/study/studies.hpp"
 
 namespace raya {

@@ -39,6 +39,10 @@ struct TorusRun {
     std::uint64_t rays() const;     // of all kinds, shadow rays among them
     std::uint64_t tests() const;    // of rays against objects of all kinds
     std::uint64_t packets() const;  // made, of all kinds
+    double overlapped_ms() const { return time.overlapped_ms; }
+    double stepwise_ms() const { return time.stepwise_ms; }
+    std::size_t supersteps() const { return result.supersteps.size(); }
+    double imbalance() const { return result.load.imbalance; }
     double tests_per_ray() const { return per_ray(tests()); }
     double steps_per_ray() const { return per_ray(result.events[RAYA_STEPS]); }
     double hops_per_packet() const;

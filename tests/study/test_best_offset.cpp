@@ -7,8 +7,8 @@
 
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"
-#include "host/study/offset_times.hpp"
 #include "host/study/rows.hpp"
+#include "host/study/spa_times.hpp"
 #include "host/study/studies.hpp"
 #include "tests/document.hpp"
 #include "tests/study/study_cases.hpp"

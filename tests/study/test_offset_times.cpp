@@ -6,7 +6,6 @@
 #include "host/ring/route.hpp"
 #include "host/study/arrays.hpp"
 #include "host/study/measured.hpp"
-#include "host/study/offset_times.hpp"
 #include "host/study/paper.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/spa_times.hpp"
