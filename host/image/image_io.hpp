@@ -3,11 +3,9 @@
 #include <array>
 #include <filesystem>
 #include <span>
-#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
+#include "host/image/encoder.hpp"
 #include "host/image/image.hpp"
 
 namespace raya {
@@ -15,12 +13,9 @@ namespace raya {
 inline constexpr std::array<std::string_view, 3> kImageExtensions{".png", ".exr", ".pfm"};
 inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // floats only: no PNG
 
-/// What a file says about its picture, as pairs of key and text. They become PNG texts and OpenEXR header entries
-/// under the names `raya:key`, which no standard attribute has; PFM has no place for them.
-using ImageAttributes = std::vector<std::pair<std::string, std::string>>;
-
-/// Refuses a target whose extension (in either case) is not among `extensions`, or that write_whole_file() could not
-/// write, so that a command can do so before it renders. Throws UserError with file, reason and remedy.
+/// Refuses a target whose extension (in either case) is not among `extensions`, whose format cannot be encoded here, or
+/// that write_whole_file() could not write, so that a command can do so before it renders. Throws UserError with file,
+/// reason and remedy.
 void check_writable_target(const std::filesystem::path& path, std::span<const std::string_view> extensions);
 
 /// Writes the picture in the format that the extension names, whole or not at all, without date, host or program
@@ -30,12 +25,5 @@ void write_image(const std::filesystem::path& path, const Image& image, const Im
 
 /// The same for one number a pixel: EXR (channel Y) or PFM.
 void write_image(const std::filesystem::path& path, const GreyImage& image, const ImageAttributes& attributes);
-
-/// Reads a colour picture as write_image() writes it; the codes of a PNG become linear values.
-/// Throws UserError with file, reason and remedy.
-Image read_image(const std::filesystem::path& path);
-
-/// Reads a picture of one number a pixel as write_image() writes it.
-GreyImage read_grey_image(const std::filesystem::path& path);
 
 }  // namespace raya

@@ -24,7 +24,7 @@ inline void check_refused(const ScratchFolder& outputs, const Words& arguments, 
 
 /// A render of `scene` into `outputs` that asks for every kind of file.
 inline Words render_into(const ScratchFolder& outputs, const std::string& scene, const Words& options = {}) {
-    Words arguments = {"render",          scene, "-o", outputs / "x.png", "--cost", outputs / "x.exr", "--report",
+    Words arguments = {"render",          scene, "-o", outputs / "x.pfm", "--cost", outputs / "x-cost.pfm", "--report",
                        outputs / "x.json"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;

@@ -18,7 +18,7 @@ class RenderFiles {
     /// Renders the scene; the test case ends here if that fails. 4 lanes unless the options name others, so that few
     /// kernels are built.
     explicit RenderFiles(const std::string& scene, std::vector<std::string> options = {},
-                         const std::string& extension = ".png", const std::string& cost_extension = ".exr")
+                         const std::string& extension = ".pfm", const std::string& cost_extension = ".pfm")
         : image_(folder_ / ("image" + extension)),
           cost_(folder_ / ("cost" + cost_extension)),
           report_(folder_ / "report.json") {

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <array>
 
-#include "host/image/image_io.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/cli/report_keys.hpp"
 #include "tests/document.hpp"
+#include "tests/image/read_image.hpp"
 
 namespace raya {
 namespace {
@@ -164,7 +164,7 @@ TEST_CASE("a mask that cannot be written is refused before anything is rendered"
     const auto refused = [&](const std::string& mask, const Words& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), supersample({"--mask", mask})), 2, message);
     };
-    for (const char* other : {"x.json", "./x.png"}) refused(outputs / other, {other, "named twice"});
+    for (const char* other : {"x.json", "./x.pfm"}) refused(outputs / other, {other, "named twice"});
     refused(scene_file("planes"), {"planes.nff", "named twice"});
     refused("", {"--mask", "must not be empty"});
     refused(outputs / "mask.jpg", {"mask.jpg", ".png, .exr, .pfm"});

@@ -51,7 +51,7 @@ TEST_CASE("a device that disappears in the middle of a render ends with the comm
     check_refused(outputs, small_render(outputs, {"--antialias", "filter"}), 3,
                   {"CL_DEVICE_NOT_AVAILABLE", "'add_neighbours'"}, failing_device("clEnqueueNDRangeKernel 2 -2"));
     check_refused(outputs,
-                  {"render", scene_file("planes"), "-o", outputs / "x.png", "--size", "16", "--lanes", "1", "--machine",
+                  {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "16", "--lanes", "1", "--machine",
                    "torus", "--nodes", "2x1x1"},
                   3, message, failing_device("clEnqueueNDRangeKernel 9 -2"));
 }

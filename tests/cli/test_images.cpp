@@ -22,7 +22,7 @@ TEST_CASE("the same render writes the same bytes", "[cli]") {
 
 TEST_CASE("PNG and EXR say how they were made", "[cli]") {
     const std::string extension = GENERATE(".png", ".exr");
-    const RenderFiles files("centre", {"--offset", "3"}, extension);
+    const RenderFiles files("centre", {"--offset", "3"}, extension, ".exr");
     const double u = files.report()["load"]["imbalance"];
     for (const std::string& path : {files.image(), files.cost()}) {
         CAPTURE(path);
@@ -43,7 +43,7 @@ TEST_CASE("no file says when or where it was made", "[cli]") {
     CAPTURE(extension);
     std::array<char, 256> host{};
     REQUIRE(::gethostname(host.data(), host.size() - 1) == 0);
-    const RenderFiles files("centre", {}, extension);
+    const RenderFiles files("centre", {}, extension, extension == ".png" ? ".exr" : extension);
     for (const std::string& path : {files.image(), files.cost()}) {
         const std::string bytes = file_contents(path);
         for (const std::string word : {"DateTime", "capDate", "tIME", "HostComputer", "Software", "owner"})

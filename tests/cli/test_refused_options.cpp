@@ -129,6 +129,19 @@ TEST_CASE("a file that cannot be written is refused before anything is rendered"
     check_refused(outputs, {"generate", "centre", "-o", missing + ".nff"}, 2, {"/missing' does not exist"});
 }
 
+TEST_CASE("where OpenImageIO does not load, PNG and EXR are refused before anything is rendered", "[cli]") {
+    const ScratchFolder libraries, outputs;
+    const std::string broken = libraries / "libOpenImageIO.so.2.4";
+    std::ofstream(broken) << "no library";
+    const Surroundings around{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
+    const std::string scene = scene_file("planes");
+    for (const std::string image : {outputs / "x.png", outputs / "x.exr"})
+        check_refused(outputs, {"render", scene, "-o", image}, 2, {image, "libOpenImageIO", "name a .pfm file"}, around);
+    const Outcome run = run_raya({"render", scene, "-o", outputs / "x.pfm", "--size", "4", "--pes", "4", "--lanes", "4"}, around);
+    INFO(run.told());
+    CHECK(run.code == 0);
+}
+
 TEST_CASE("a folder without permission to write is refused", "[cli]") {
     const ScratchFolder outputs;
     ::chmod(outputs.path().c_str(), 0555);

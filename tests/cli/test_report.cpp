@@ -4,11 +4,11 @@
 #include <numeric>
 #include <set>
 
-#include "host/image/image_io.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/cli/report_keys.hpp"
 #include "tests/document.hpp"
+#include "tests/image/read_image.hpp"
 
 namespace raya {
 namespace {

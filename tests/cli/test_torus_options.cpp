@@ -16,7 +16,7 @@ struct Row {
 void check_refused_on(const std::string& machine, const std::vector<Row>& rows) {
     const ScratchFolder outputs;
     for (const Row& row : quick_of(3, rows)) {
-        Words arguments = {"render", scene_file("planes"), "-o", outputs / "x.png", "--machine", machine};
+        Words arguments = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--machine", machine};
         arguments.insert(arguments.end(), row.options.begin(), row.options.end());
         check_refused(outputs, arguments, 2, row.message);
     }
@@ -72,14 +72,14 @@ TEST_CASE("the torus's own options are checked before anything is rendered", "[c
 
 TEST_CASE("a trace of packets that could not be written is refused before anything is rendered", "[cli]") {
     const ScratchFolder outputs;
-    const std::string missing = outputs / "missing/p.csv.gz", image = outputs / "x.png";
+    const std::string missing = outputs / "missing/p.csv.gz", image = outputs / "x.pfm";
     check_refused_on("torus", {{{"--packets", outputs / "p.csv"}, {"p.csv", "gzip", ".csv.gz"}},
                                {{"--packets", missing}, {"/missing' does not exist", "mkdir -p"}},
                                {{"--packets", outputs / "p.csv.gz", "--report", outputs / "p.csv.gz"},
                                 {"p.csv.gz", "named twice"}}});
     check_refused(
         outputs,
-        {"render", scene_file("planes"), "-o", outputs / "x.png", "--machine", "torus", "--packets", outputs.path()}, 2,
+        {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--machine", "torus", "--packets", outputs.path()}, 2,
         {outputs.path(), "gzip"});
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("a machine that stands still is refused with a queue that has been tri
     const ScratchFolder outputs;
     check_refused(outputs,
                   [&] {
-                      Words words = {"render", file, "-o", outputs / "x.png"};
+                      Words words = {"render", file, "-o", outputs / "x.pfm"};
                       words.insert(words.end(), machine.begin(), machine.end());
                       return words;
                   }(),

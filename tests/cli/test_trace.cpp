@@ -20,7 +20,7 @@ struct TracedRun {
 TracedRun traced(const std::string& scene, const Words& options, const std::string& ending = ".json") {
     const ScratchFolder folder;
     const std::string file = folder / ("t" + ending), report = folder / "r.json";
-    Words words = {"render", scene_file(scene), "-o", folder / "x.png", "--size", "24x16", "--lanes",
+    Words words = {"render", scene_file(scene), "-o", folder / "x.pfm", "--size", "24x16", "--lanes",
                    "4",      "--trace",         file, "--report",       report};
     words.insert(words.end(), options.begin(), options.end());
     TracedRun t{run_raya(words), {}, {}};
@@ -145,7 +145,7 @@ TEST_CASE("a limit on events is kept and said", "[cli]") {
 TEST_CASE("a trace that cannot be is refused before anything is rendered", "[cli]") {
     const ScratchFolder folder;
     const auto refused = [&](const Words& options) {
-        Words words = {"render", scene_file("centre"), "-o", folder / "x.png", "--size", "8", "--pes", "8"};
+        Words words = {"render", scene_file("centre"), "-o", folder / "x.pfm", "--size", "8", "--pes", "8"};
         words.insert(words.end(), options.begin(), options.end());
         const Outcome run = run_raya(words);
         INFO(run.told());

@@ -17,6 +17,7 @@
 #include "host/image/image_io.hpp"
 #include "host/image/srgb.hpp"
 #include "tests/files/scratch_folder.hpp"
+#include "tests/image/read_image.hpp"
 
 namespace raya {
 namespace {
@@ -63,7 +64,6 @@ TEST_CASE("grey images come back too, EXR in a channel Y of floats", "[image_io]
         CHECK(back.width == 3);
         CHECK(back.height == 2);
         CHECK(back.values == image.values);
-        CHECK_THROWS_WITH(read_image(folder / name), Contains(name) && Contains("1 channels, not 3"));
     }
     const auto file = OIIO::ImageInput::open((folder / "cost.exr").string());
     REQUIRE(file);
@@ -196,21 +196,6 @@ TEST_CASE("a picture without all its pixels is a mistake of the program", "[imag
     CHECK_THROWS_AS(write_image(folder / "a.exr", Image{2, 2, std::vector<float>(11)}, {}), std::logic_error);
     CHECK_THROWS_AS(write_image(folder / "a.exr", GreyImage{0, 2, {}}, {}), std::logic_error);
     CHECK(folder.entries() == 0);
-}
-
-TEST_CASE("files that are no pictures are refused on reading", "[image_io]") {
-    const ScratchFolder folder;
-    CHECK_THROWS_WITH(read_image(folder / "none.exr"), Contains("none.exr"));
-    CHECK_THROWS_WITH(read_image(folder / "none.pfm"), Contains("none.pfm"));
-    for (const char* bytes :
-         {"", "PF", "PF\n2 2\n1.0\n0000", "PF\n0 1\n-1.0\n", "PF\n-2 1\n-1.0\n", "PF\n2 2\n-1.0\n0000",
-          "PF\n999999999 999999999\n-1.0\n0000", "XY\n1 1\n-1.0\n000000000000"}) {
-        CAPTURE(bytes);
-        for (const char* name : {"bad.pfm", "bad.png", "bad.exr"}) {
-            std::ofstream(folder / name, std::ios::binary) << bytes;
-            CHECK_THROWS_WITH(read_image(folder / name), Contains("cannot read") && Contains(name));
-        }
-    }
 }
 
 }  // namespace

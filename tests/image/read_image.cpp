@@ -1,0 +1,53 @@
+#include "tests/image/read_image.hpp"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+
+#include "host/image/srgb.hpp"
+
+namespace raya {
+namespace {
+
+template <class T>
+std::vector<T> read_values(OIIO::ImageInput& input, const OIIO::TypeDesc& type) {
+    const OIIO::ImageSpec& spec = input.spec();
+    std::vector<T> values(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
+    const int subimage = 0, level = 0, first_channel = 0, end_channel = -1;  // -1: all of them
+    if (!input.read_image(subimage, level, first_channel, end_channel, type, values.data()))
+        throw std::runtime_error(input.geterror());
+    return values;
+}
+
+/// `width` and `height` are set from the file.
+std::vector<float> read_floats(const std::filesystem::path& path, int channels, int& width, int& height) {
+    const auto input = OIIO::ImageInput::open(path.string());
+    if (!input) throw std::runtime_error(OIIO::geterror());
+    const OIIO::ImageSpec& spec = input->spec();
+    if (spec.nchannels != channels) throw std::runtime_error(path.string() + " has another number of channels");
+    width = spec.width;
+    height = spec.height;
+    if (spec.format != OIIO::TypeDesc::UINT8) return read_values<float>(*input, OIIO::TypeDesc::FLOAT);
+    const auto codes = read_values<std::uint8_t>(*input, OIIO::TypeDesc::UINT8);
+    std::vector<float> values(codes.size());
+    std::transform(codes.begin(), codes.end(), values.begin(), linear_from_srgb_code);
+    return values;
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path) {
+    Image image;
+    image.rgb = read_floats(path, 3, image.width, image.height);
+    return image;
+}
+
+GreyImage read_grey_image(const std::filesystem::path& path) {
+    GreyImage image;
+    image.values = read_floats(path, 1, image.width, image.height);
+    return image;
+}
+
+}  // namespace raya
