@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include "host/cl/driver_cache.hpp"
+#include "host/cl/driver_call.hpp"
 #include "host/cl/error_names.hpp"
 
 namespace raya {
@@ -56,6 +58,8 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices) {
 }
 
 std::vector<cl::Platform> all_platforms() {
+    provide_driver_cache();
+    const DriverCall call("looking for platforms");
     std::vector<cl::Platform> platforms;
     try {
         cl::Platform::get(&platforms);
@@ -67,6 +71,7 @@ std::vector<cl::Platform> all_platforms() {
 }
 
 std::vector<cl::Device> devices_of(const cl::Platform& platform) {
+    const DriverCall call("looking for devices");
     std::vector<cl::Device> devices;
     try {
         platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
@@ -120,7 +125,8 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
     if (devices.empty()) {
         throw DeviceError(
             "no OpenCL device found; remedy: install a driver (Debian: apt install pocl-opencl-icd), look at the "
-            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists");
+            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists; PoCL shows none where it "
+            "may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME)");
     }
     if (wanted.empty()) return default_index(devices);
     const std::optional<std::size_t> number = as_index(wanted);

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "host/cl/driver_call.hpp"
 #include "host/cl/opencl.hpp"
 #include "host/error.hpp"
 
@@ -20,6 +21,7 @@ DeviceError device_error(const std::string& call, cl_int code, const std::string
 /// Runs `action` and returns what it returns; a cl::Error in it becomes the DeviceError that also says `what` was done.
 template <class Action>
 decltype(auto) guarded(const std::string& what, Action&& action) {
+    const DriverCall call(what.c_str());
     try {
         return action();
     } catch (const cl::Error& error) {

@@ -20,6 +20,11 @@ std::string log_of(const cl::Program& program, const cl::Device& device) {
     }
 }
 
+// Behind a log without an error.
+constexpr const char* kNoReason =
+    "The log gives no reason. PoCL's has none where its cache is full, damaged or may not be written: name an empty folder "
+    "with room in POCL_CACHE_DIR.\n";
+
 std::string name_of(const cl::Device& device) {
     const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
     return platform.getInfo<CL_PLATFORM_NAME>() + " " + device.getInfo<CL_DEVICE_NAME>();
@@ -37,11 +42,13 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
     });
     const auto start = std::chrono::steady_clock::now();
     try {
+        const DriverCall call(what.c_str());
         program_.build(device, options_.c_str());
     } catch (const cl::Error& error) {
-        throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}",
-                                      device_error(error.what(), error.err(), what).what(), device_name, options_,
-                                      log_of(program_, device)));
+        const std::string log = log_of(program_, device);
+        throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}{}",
+                                      device_error(error.what(), error.err(), what).what(), device_name, options_, log,
+                                      log.find("error") == log.npos ? kNoReason : ""));
     }
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     log_ = log_of(program_, device);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "host/cli/bench_rows.hpp"
@@ -12,15 +13,16 @@
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
+#include "host/cli/scene_input.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/kernels/operation_rates.hpp"
 #include "host/report/bench_compare.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/table.hpp"
-#include "host/scene/nff_reader.hpp"
 
 namespace raya {
 namespace {
@@ -90,8 +92,8 @@ BenchReport checked_files(const BenchCommand& command) {
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance));
     if (!command.report.empty()) check_writable(command.report);
     if (command.baseline.empty()) return {};
-    if (!command.report.empty() &&
-        std::filesystem::weakly_canonical(command.report) == std::filesystem::weakly_canonical(command.baseline))
+    std::error_code error;  // of a file that is not there, and so not the other one
+    if (!command.report.empty() && std::filesystem::equivalent(command.report, command.baseline, error))
         throw UserError(
             fmt::format("{}: named by --report and --compare; a baseline is not written over by the run "
                         "that is held against it: name another report",
@@ -137,7 +139,23 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
     return rows;
 }
 
-void bench(BenchCommand command) {
+// What would be passed over without a word.
+void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
+    if (parsed.count("--tolerance") > 0 && command.baseline.empty())
+        throw UserError("--tolerance says what --compare puts up with: give --compare FILE.json as well");
+    if (!command.ways.empty() && parsed.count("--accel") > 0)
+        throw UserError("--accel with --ways: the ways none and grid say which; leave --accel out");
+    if (command.ways.empty() || command.ways != std::vector<std::string>(command.ways.size(), "torus")) return;
+    for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
+        if (parsed.count(option) > 0)
+            throw UserError(fmt::format(
+                "{} with --ways torus: the torus has 4x4x4 nodes without a memory limit, whose voxels are no mapping of "
+                "pixels; leave it out, or add the way none",
+                option));
+}
+
+void bench(const CLI::App& parsed, BenchCommand command) {
+    refuse_ignored(parsed, command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
     const BenchReport baseline = checked_files(command);
@@ -146,14 +164,17 @@ void bench(BenchCommand command) {
     command.render.format.clear();
     const Scene scene = command.render.scene.empty()
                             ? parse_nff(embedded_files().at("scenes/spheres.nff"), "scenes/spheres.nff")
-                            : read_nff(command.render.scene);
+                            : read_scene(command.render.scene, command.render.strict).scene;
     const RingSettings settings = ring_settings(command.render, scene);
     if (settings.antialias.method != AntialiasMethod::kNone)
         throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
+    std::optional<ProgressBar> bar(std::in_place, true, "preparing");
     Session session(choose_device(command.render.device));
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
     check_comparable(command, baseline, bench_report(rows, session.device()));
+    bar->stage("taking samples");
     take_samples(rows, command.samples);
+    bar.reset();
     fmt::print("{} on {}: {} x {} pixels, {} PEs, {} bounces, {} rays; {} samples of 20 ms or more after a warm-up\n",
                scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
                settings.bounces, rows.front().said.rays, command.samples);
@@ -196,7 +217,7 @@ void add_bench_command(CLI::App& program) {
     command->get_option("--format")
         ->description(
             "Formats to compare, with commas between them: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");
-    command->callback([options] { bench(*options); });
+    command->callback([command, options] { bench(*command, *options); });
 }
 
 }  // namespace raya

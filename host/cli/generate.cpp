@@ -8,6 +8,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
+#include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/scene/nff_writer.hpp"
 
@@ -21,6 +22,15 @@ struct GenerateOptions {
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
 };
+
+template <class Make>
+void write_scene(const GenerateOptions& options, Make&& make) {
+    check_writable(options.output);
+    ProgressBar bar(true, "generating");
+    const Scene scene = make();
+    bar.stage("writing");
+    write_whole_file(options.output, write_nff(scene));
+}
 
 CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help) {
     CLI::App* kind = command.add_subcommand(name, help);
@@ -40,7 +50,7 @@ void add_generate_command(CLI::App& program) {
     add_value(*balls, "--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")
         ->type_name("LEVEL")
         ->capture_default_str();
-    balls->callback([options] { write_whole_file(options->output, write_nff(generate_balls(options->level))); });
+    balls->callback([options] { write_scene(*options, [&] { return generate_balls(options->level); }); });
 
     CLI::App* lattice =
         add_kind(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube");
@@ -49,20 +59,21 @@ void add_generate_command(CLI::App& program) {
         ->type_name("N")
         ->capture_default_str();
     lattice->callback(
-        [options] { write_whole_file(options->output, write_nff(generate_lattice(static_cast<int>(options->size)))); });
+        [options] { write_scene(*options, [&] { return generate_lattice(static_cast<int>(options->size)); }); });
 
     CLI::App* uniform =
         add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube");
     add_value(*uniform, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
-    add_value(*uniform, "--voxels", options->voxels, "Voxels along x, y and z, 1..256 each")
+    add_value(*uniform, "--voxels", options->voxels, "Voxels along x, y and z, 1..256 each, at most 1,048,576 together")
         ->type_name("XxYxZ")
         ->required();
     uniform->callback([options] {
         const auto sides =
             parse_three_sides("--voxels", options->voxels, fmt::format("1..{} each", kMostVoxelsAlongAxis));
-        const Scene scene = generate_uniform(
-            options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
-        write_whole_file(options->output, write_nff(scene));
+        write_scene(*options, [&] {
+            return generate_uniform(
+                options->count, {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2])});
+        });
     });
 
     CLI::App* random =
@@ -72,11 +83,11 @@ void add_generate_command(CLI::App& program) {
         ->type_name("N")
         ->capture_default_str();
     random->callback(
-        [options] { write_whole_file(options->output, write_nff(generate_random(options->count, options->seed))); });
+        [options] { write_scene(*options, [&] { return generate_random(options->count, options->seed); }); });
 
     CLI::App* centre =
         add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
-    centre->callback([options] { write_whole_file(options->output, write_nff(generate_centre())); });
+    centre->callback([options] { write_scene(*options, [&] { return generate_centre(); }); });
 }
 
 }  // namespace raya

@@ -1,11 +1,14 @@
 #include "host/cli/options.hpp"
 
+#include <fmt/core.h>
+
+#include "host/error.hpp"
+
 namespace raya {
 
-std::string odd_value(const std::string& value, bool is_whole) {
-    if (value.empty()) return "must not be empty";
-    const bool digits = value.find_first_not_of("0123456789") == std::string::npos;
-    return is_whole && !digits ? "'" + value + "' is not a whole number" : "";
+void refuse_value(const std::string& option, const std::string& value, const char* reason, const std::string& help) {
+    throw UserError(value.empty() ? fmt::format("{} {}; {}: {}", option, reason, option, help)
+                                  : fmt::format("{} {}: {}; {}: {}", option, value, reason, option, help));
 }
 
 }  // namespace raya

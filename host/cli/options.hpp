@@ -1,26 +1,54 @@
 // Options of a command, which take what their values' types can hold.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace raya {
 
+/// The type of an option's value behind std::optional or std::vector, of which each element is given by itself.
 template <class Value>
-inline constexpr bool kIsWhole = std::is_unsigned_v<Value>;
+struct OptionValue {
+    using Type = Value;
+};
 template <class Value>
-inline constexpr bool kIsWhole<std::optional<Value>> = kIsWhole<Value>;
+struct OptionValue<std::optional<Value>> : OptionValue<Value> {};
+template <class Value>
+struct OptionValue<std::vector<Value>> : OptionValue<Value> {};
 
-/// What is wrong with an option's value, or nothing: it must not be empty, and of whole numbers have digits alone. The
-/// parser would take the first as not given and wrap negative numbers round.
-std::string odd_value(const std::string& value, bool is_whole);
+/// Throws UserError, in which the help text says what would be right.
+[[noreturn]] void refuse_value(const std::string& option, const std::string& value, const char* reason,
+                               const std::string& help);
 
-/// Adds an option that fills `value` and refuses odd values. Whole numbers are the unsigned types.
+/// Refuses what is empty, and of numbers what does not read as one or does not fit the type. The parser would take the
+/// first as not given, wrap negative numbers round and cut large ones.
+template <class Value>
+void check_value(const std::string& option, const std::string& text, const std::string& help) {
+    if (text.empty()) refuse_value(option, text, "must not be empty", help);
+    if constexpr (std::is_arithmetic_v<Value>) {
+        Value value{};
+        const char* const end = text.data() + text.size();
+        const auto [read_to, error] = std::from_chars(text.data(), end, value);
+        const char* const kind = std::is_integral_v<Value> ? "not a whole number" : "not a number";
+        const bool below = std::is_unsigned_v<Value> && text.size() > 1 && text[0] == '-' &&
+                           text.find_first_not_of("0123456789", 1) == std::string::npos;
+        if (below || error == std::errc::result_out_of_range) refuse_value(option, text, "out of range", help);
+        if (error != std::errc{} || read_to != end) refuse_value(option, text, kind, help);
+    }
+}
+
+/// Adds an option that fills `value` and refuses odd values.
 template <class Value>
 CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "") {
     CLI::Option* option = command.add_option(name, value, help);
-    return option->check([](const std::string& text) { return odd_value(text, kIsWhole<Value>); });
+    return option->check([option](const std::string& text) {
+        check_value<typename OptionValue<Value>::Type>(option->get_name(), text, option->get_description());
+        return std::string();
+    });
 }
 
 }  // namespace raya

@@ -14,11 +14,12 @@
 namespace raya {
 namespace {
 
-// A file that is named twice would be written over by the other one.
-void check_distinct(const std::vector<std::string>& files) {
-    std::set<std::filesystem::path> seen;
-    for (const std::string& file : files)
-        if (!file.empty() && !file.starts_with("/dev/") && !seen.insert(std::filesystem::weakly_canonical(file)).second)
+// A file that is named twice would be written over by the other one, or over the scene.
+void check_distinct(const std::string& scene, const std::vector<std::string>& outputs) {
+    std::error_code error;
+    std::set<std::filesystem::path> seen = {std::filesystem::canonical(scene, error)};
+    for (const std::string& file : outputs)
+        if (!file.empty() && !file.starts_with("/dev/") && !seen.insert(written_file(file)).second)
             throw UserError(fmt::format(
                 "{}: named twice; scene, image, cost image, mask, report, packets and trace must be different files",
                 file));
@@ -35,24 +36,30 @@ void check_packets(const std::string& file) {
 
 void check_targets(const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
-    check_distinct(
-        {command.render.scene, command.image, command.cost, command.mask, command.report, packets, command.trace.file});
+    if (!packets.empty()) check_packets(packets);
+    check_distinct(command.render.scene, {command.image, command.cost, command.mask, command.report, packets,
+                                          command.trace.file});
     check_writable_target(command.image, kImageExtensions);
     if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
     if (!command.mask.empty()) check_writable_target(command.mask, kImageExtensions);
     if (!command.mask.empty() && command.render.antialias != "supersample")
         throw UserError("--mask shows which pixels were supersampled: give --antialias supersample as well");
     if (!command.report.empty()) check_writable(command.report);
-    if (!packets.empty()) check_packets(packets);
 }
 
 void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
-                 const std::vector<KernelWork>& works) {
+                 const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = watch.builds();
     try {
         const DevicePeak peak =
             watch.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
+        constexpr double kMuch = 0.15;  // idle machines stay below a tenth
+        if (peak.scatter > kMuch)
+            warnings.add(fmt::format("the device's peak, measured three times, scatters by {:.0f} %: something else runs on it, "
+                                     "and shares of the peak say little",
+                                     100 * peak.scatter));
+        report.warnings = warnings.texts();
     } catch (const DeviceError& error) {  // the render's own figures stand
         report.measured.roofline.emplace().lacking = error.what();
     }

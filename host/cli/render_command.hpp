@@ -5,6 +5,7 @@
 
 #include "host/cli/render_options.hpp"
 #include "host/cli/render_watch.hpp"
+#include "host/cli/scene_input.hpp"
 #include "host/cli/torus_options.hpp"
 #include "host/image/image_io.hpp"
 #include "host/report/render_report.hpp"
@@ -28,9 +29,12 @@ void check_targets(const RenderCommand& command);
 
 /// What any machine's result tells: scene, image, device, times. The rest is the caller's.
 template <class Result>
-RenderReport begin_report(const RenderCommand& command, const DeviceInfo& device, const Result& result) {
+RenderReport begin_report(const RenderCommand& command, const SceneInput& input, const DeviceInfo& device,
+                          const Result& result) {
     RenderReport report;
     report.scene = command.render.scene;
+    report.warnings = input.warnings.texts();
+    report.skipped = input.remarks;
     report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
     report.device = {device.name,          device.platform, device.version,
                      result.build_options, result.lanes,    result.group_size};
@@ -40,7 +44,7 @@ RenderReport begin_report(const RenderCommand& command, const DeviceInfo& device
 
 /// For --profile: the builds, and the works of all kernels against the peak of `device`, which is measured now.
 void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
-                 const std::vector<KernelWork>& works);
+                 const std::vector<KernelWork>& works, Warnings& warnings);
 
 /// What every picture of a render says about itself.
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);

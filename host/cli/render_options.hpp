@@ -18,6 +18,7 @@ namespace raya {
 struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
                        points, kernel_dir, accel = "none";
+    bool strict = false;
     std::optional<double> threshold;
     std::optional<std::uint64_t> pe_memory;  // bytes
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;

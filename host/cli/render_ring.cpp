@@ -1,4 +1,6 @@
 // raya render on a ring machine: pixels are divided among the PEs.
+#include <optional>
+
 #include "host/cli/render_command.hpp"
 #include "host/files/progress.hpp"
 #include "host/machine/budget.hpp"
@@ -7,15 +9,9 @@
 #include "host/ring/ring_trace.hpp"
 #include "host/ring/ring_work.hpp"
 #include "host/ring/schedule.hpp"
-#include "host/scene/nff_reader.hpp"
 
 namespace raya {
 namespace {
-
-RingResult render_with_progress(RingRenderer& renderer, bool wanted) {
-    ProgressBar bar(wanted);
-    return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
-}
 
 std::optional<Antialiasing> antialiasing(const RingSettings& settings, const RingResult& result) {
     const Antialias& a = settings.antialias;
@@ -38,9 +34,9 @@ std::optional<ModelledTime> modelled(const RingSettings& settings, const RingRes
                          smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
 }
 
-RenderReport make_report(const RenderCommand& command, const RingSettings& settings, const DeviceInfo& device,
-                         const RingResult& result) {
-    RenderReport report = begin_report(command, device, result);
+RenderReport make_report(const RenderCommand& command, const SceneInput& input, const RingSettings& settings,
+                         const DeviceInfo& device, const RingResult& result) {
+    RenderReport report = begin_report(command, input, device, result);
     report.machine = {.name = settings.machine.name,
                       .topology = settings.machine.topology,
                       .mapping = mapping_text(settings.mapping),
@@ -49,6 +45,7 @@ RenderReport make_report(const RenderCommand& command, const RingSettings& setti
                       .pes = settings.mapping.pes,
                       .offset = {},
                       .bounces = settings.bounces,
+                      .length_exponent = result.scale.exponent,
                       .pe_memory_bytes = settings.machine.pe_memory_bytes.value_or(0),
                       .pe_memory_used_bytes = result.pe_memory.bytes()};
     if (settings.dynamic) {
@@ -85,18 +82,30 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 void render_on_ring(const RenderCommand& command) {
     RenderWatch watch(command.trace, command.profile);
-    const Scene scene = watch.steps().during("read scene", [&] { return read_nff(command.render.scene); });
+    std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
+    SceneInput input =
+        watch.steps().during("read scene", [&] { return read_scene(command.render.scene, command.render.strict); });
+    const Scene& scene = input.scene;
     const RingSettings settings = ring_settings(command.render, scene);
+    warn_of_slow_search(scene, settings.accel.grid, input.warnings);
+    bar->stage("preparing");
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(command.render.device); });
     Session session = watch.steps().during("open device", [&] { return Session(device); });
     watch.observe(session);
     RingRenderer renderer(session, scene, settings);
-    const RingResult result = render_with_progress(renderer, !command.quiet);
+    warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
+    bar->stage("rendering");
+    const RingResult result =
+        renderer.render(bar->active() ? [&](double done) { bar->update(done); } : ProgressCallback{});
+    bar->stage("writing");
 
-    RenderReport report = make_report(command, settings, session.device(), result);
+    RenderReport report = make_report(command, input, settings, session.device(), result);
     watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
-    if (command.profile) add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result));
+    bar->stage("measuring the device's peak");
+    if (command.profile)
+        add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result), input.warnings);
+    bar.reset();
     watch.steps().during("write report", [&] { write_report(command, report); });
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
 }

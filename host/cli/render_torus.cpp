@@ -6,7 +6,6 @@
 #include "host/cli/render_command.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
-#include "host/scene/nff_reader.hpp"
 #include "host/torus/packet_trace.hpp"
 #include "host/torus/queue_search.hpp"
 #include "host/torus/standstill.hpp"
@@ -19,7 +18,7 @@
 namespace raya {
 namespace {
 
-TorusResult render_with_progress(TorusRenderer& renderer, bool wanted, PacketTrace* packets, TorusTrace* trace) {
+TorusResult render_with_progress(TorusRenderer& renderer, ProgressBar& bar, PacketTrace* packets, TorusTrace* trace) {
     PacketSink packet_sink;
     SuperstepSink step_sink;
     if (trace) step_sink = [trace](const SuperstepDetail& step) { trace->add_superstep(step); };
@@ -28,16 +27,17 @@ TorusResult render_with_progress(TorusRenderer& renderer, bool wanted, PacketTra
             if (packets) packets->add(record);
             if (trace) trace->add_packet(record);
         };
-    ProgressBar bar(wanted);
+    bar.stage("rendering");
     return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{}, packet_sink,
                            step_sink, packets ? 1 : TorusTrace::kPacketsEvery);
 }
 
 // Where the machine stands still, a queue is looked for that is long enough.
-TorusResult render_to_its_end(TorusRenderer& renderer, bool wanted, PacketTrace* packets, TorusTrace* trace) {
+TorusResult render_to_its_end(TorusRenderer& renderer, ProgressBar& bar, PacketTrace* packets, TorusTrace* trace) {
     try {
-        return render_with_progress(renderer, wanted, packets, trace);
+        return render_with_progress(renderer, bar, packets, trace);
     } catch (const Standstill& still) {
+        bar.stage("looking for a queue that is long enough");
         const QueueFound found = longer_queue(still.figures.queue, renderer.queue_trial());
         throw Standstill(still.figures, queue_remedy(found));
     }
@@ -68,9 +68,9 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     return t;
 }
 
-RenderReport make_report(const RenderCommand& command, const TorusSettings& settings, const DeviceInfo& device,
-                         const TorusResult& result) {
-    RenderReport report = begin_report(command, device, result);
+RenderReport make_report(const RenderCommand& command, const SceneInput& input, const TorusSettings& settings,
+                         const DeviceInfo& device, const TorusResult& result) {
+    RenderReport report = begin_report(command, input, device, result);
     report.machine = {.name = settings.machine.name,
                       .topology = links_name(settings.links),
                       .mapping = "voxels",
@@ -79,6 +79,7 @@ RenderReport make_report(const RenderCommand& command, const TorusSettings& sett
                       .pes = raya_nodes(settings.torus),
                       .offset = {},
                       .bounces = settings.bounces,
+                      .length_exponent = result.scale.exponent,
                       .pe_memory_bytes = settings.memory_bytes.value_or(0),
                       .pe_memory_used_bytes = result.node_bytes};
     report.events = result.events;
@@ -91,26 +92,35 @@ RenderReport make_report(const RenderCommand& command, const TorusSettings& sett
 
 void render_on_torus(const RenderCommand& command) {
     RenderWatch watch(command.trace, command.profile);
-    const Scene scene = watch.steps().during("read scene", [&] { return read_nff(command.render.scene); });
+    std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
+    SceneInput input =
+        watch.steps().during("read scene", [&] { return read_scene(command.render.scene, command.render.strict); });
+    const Scene& scene = input.scene;
     const TorusSettings settings = torus_settings(command.render, command.torus, scene);
+    bar->stage("preparing");
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(command.render.device); });
     Session session = watch.steps().during("open device", [&] { return Session(device); });
     watch.observe(session);
     TorusRenderer renderer(session, scene, settings);
+    warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     std::optional<PacketTrace> packets;
     std::optional<TorusTrace> trace;
     if (!command.torus.packets.empty()) packets.emplace();
     if (watch.traces()) trace.emplace(settings.torus);
     const TorusResult result =
-        render_to_its_end(renderer, !command.quiet, packets ? &*packets : nullptr, trace ? &*trace : nullptr);
+        render_to_its_end(renderer, *bar, packets ? &*packets : nullptr, trace ? &*trace : nullptr);
 
-    RenderReport report = make_report(command, settings, session.device(), result);
+    bar->stage("writing");
+    RenderReport report = make_report(command, input, settings, session.device(), result);
     watch.steps().during("write images", [&] {
         write_image(command.image, result.image, image_attributes(report, scene.name));
         if (packets) write_whole_file(command.torus.packets, packets->finish());
     });
-    if (command.profile) add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result));
+    bar->stage("measuring the device's peak");
+    if (command.profile)
+        add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result), input.warnings);
+    bar.reset();
     watch.steps().during("write report", [&] { write_report(command, report); });
     watch.write(session, [&](TraceFile& file) { trace->add_to(file, result, command.trace.pes); });
 }

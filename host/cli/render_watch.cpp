@@ -5,6 +5,7 @@
 #include "host/cl/clock_anchor.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
+#include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/session_trace.hpp"
 
@@ -71,8 +72,9 @@ void RenderWatch::write(Session& session, const std::function<void(TraceFile&)>&
     add_machine(file);
     write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));
     if (file.left_out() > 0)
-        fmt::print(stderr, "raya: {}: {} events are left out of {}; remedy: --trace-events {}, or fewer --trace-pes\n",
-                   trace_.file, file.left_out(), file.events() + file.left_out(), file.events() + file.left_out());
+        say(fmt::format("raya: {}: {} events are left out of {}; remedy: --trace-events {}, or fewer --trace-pes\n",
+                        trace_.file, file.left_out(), file.events() + file.left_out(),
+                        file.events() + file.left_out()));
 }
 
 }  // namespace raya

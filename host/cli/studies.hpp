@@ -10,8 +10,19 @@ class App;
 
 namespace raya {
 
-/// Makes the folder, and refuses it before the work rather than after if the files could not be written. UserError.
-void prepare_folder(const std::filesystem::path& folder, const std::vector<std::string>& files);
+/// The folder of a study's files.
+class StudyFolder {
+  public:
+    /// Makes it, and refuses it before the work rather than after if the files could not be written. UserError.
+    StudyFolder(const std::filesystem::path& folder, const std::vector<std::string>& files);
+    /// Folders that it has made are gone again if nothing lies in them.
+    ~StudyFolder();
+    StudyFolder(const StudyFolder&) = delete;
+    StudyFolder& operator=(const StudyFolder&) = delete;
+
+  private:
+    std::vector<std::filesystem::path> made_;  // the innermost first
+};
 
 /// Adds the load laboratory's studies, and `all`, to `raya study`.
 void add_laboratory_studies(CLI::App& study);

@@ -1,6 +1,5 @@
 // raya study NAME: measurements over many renders, written as tables. Each study adds its own command here.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,13 +9,13 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/scene_input.hpp"
 #include "host/cli/studies.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/table.hpp"
-#include "host/scene/nff_reader.hpp"
 #include "host/study/formats_report.hpp"
 #include "host/study/formats_study.hpp"
 
@@ -30,6 +29,7 @@ struct FormatsCommand {
     std::vector<std::string> scenes, formats;
     std::optional<std::uint32_t> lanes;
     std::uint32_t samples = 5;
+    bool strict = false;
 };
 
 // Each format once, in the order given; fp32 is always there.
@@ -61,13 +61,13 @@ FormatsSettings formats_settings(const FormatsCommand& command) {
 std::vector<LabelledScene> scenes_of(const FormatsCommand& command) {
     if (command.scenes.empty()) return embedded_study_scenes();
     std::vector<LabelledScene> scenes;
-    for (const std::string& file : command.scenes) scenes.push_back({file, read_nff(file)});
+    for (const std::string& file : command.scenes) scenes.push_back({file, read_scene(file, command.strict).scene});
     return scenes;
 }
 
 FormatsStudy run_with_progress(Session& session, const std::vector<LabelledScene>& scenes,
                                const FormatsSettings& settings) {
-    ProgressBar bar(true);
+    ProgressBar bar(true, "study formats");
     return run_formats_study(session, scenes, settings,
                              bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
 }
@@ -77,7 +77,7 @@ void study_formats(const FormatsCommand& command) {
     const std::vector<LabelledScene> scenes = scenes_of(command);
     const fs::path folder = command.folder;
     Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
-    prepare_folder(folder, {"formats.csv", "formats.json", "formats.md"});
+    const StudyFolder made(folder, {"formats.csv", "formats.json", "formats.md"});
     const FormatsStudy study = run_with_progress(session, scenes, settings);
     write_whole_file(folder / "formats.csv", formats_csv(study));
     write_whole_file(folder / "formats.json", formats_json(study).dump(2) + "\n");
@@ -117,21 +117,17 @@ void add_formats_study(CLI::App& study) {
     add_value(*command, "--size", options->size, "Image size in pixels, 1..16384 a side")
         ->type_name("N|WxH")
         ->capture_default_str();
+    add_strict_option(*command, options->strict);
     add_timing_options(*command, *options);
     command->callback([options] { study_formats(*options); });
 }
 
-std::string names_of_studies(const CLI::App& command) {
-    std::vector<std::string> names;
-    for (const CLI::App* study : command.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(study->get_name());
-    return fmt::format("{}", fmt::join(names, ", "));
-}
-
 }  // namespace
 
-void prepare_folder(const fs::path& folder, const std::vector<std::string>& files) {
+StudyFolder::StudyFolder(const fs::path& folder, const std::vector<std::string>& files) {
     std::error_code error;
+    for (fs::path missing = folder; !missing.empty() && !fs::exists(missing, error); missing = missing.parent_path())
+        made_.push_back(missing);
     fs::create_directories(folder, error);
     if (error)
         throw UserError(
@@ -139,19 +135,16 @@ void prepare_folder(const fs::path& folder, const std::vector<std::string>& file
     for (const std::string& file : files) check_writable(folder / file);
 }
 
+StudyFolder::~StudyFolder() {
+    std::error_code error;  // of a folder that has something in it
+    for (const fs::path& folder : made_) fs::remove(folder, error);
+}
+
 void add_study_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("study", "Measure over many renders and write tables");
+    command->require_subcommand(1);
     add_laboratory_studies(*command);
     add_formats_study(*command);
-    // What is no study's name would be "not expected" without a word on what is: it lands here instead.
-    const auto refuse = [command](const std::string& name) {
-        throw UserError(fmt::format("no study '{}': there are {}", name, names_of_studies(*command)));
-    };
-    command->add_option_function<std::string>("NAME", refuse, "The study, see Subcommands")->type_name("");
-    command->callback([command] {
-        if (command->get_subcommands().empty())
-            throw UserError(fmt::format("study: name one of {}", names_of_studies(*command)));
-    });
 }
 
 }  // namespace raya

@@ -2,17 +2,19 @@
 // story.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/scene_input.hpp"
 #include "host/cli/studies.hpp"
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
-#include "host/scene/nff_reader.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/studies.hpp"
 
@@ -25,6 +27,7 @@ struct LaboratoryCommand {
     std::string folder, device;
     std::optional<std::uint32_t> size;
     std::vector<std::string> scenes;
+    bool strict = false;
 };
 
 std::uint32_t side_of(const LaboratoryCommand& command) {
@@ -35,9 +38,19 @@ std::uint32_t side_of(const LaboratoryCommand& command) {
     return *command.size;
 }
 
+bool names_a_study(const std::string& word) {
+    return std::any_of(studies().begin(), studies().end(), [&](const Study& study) { return study.name == word; });
+}
+
 std::vector<LabelledScene> named_scenes(const LaboratoryCommand& command) {
     std::vector<LabelledScene> scenes;
-    for (const std::string& file : command.scenes) scenes.push_back({file, read_nff(file)});
+    for (const std::string& file : command.scenes) {
+        std::error_code error;
+        if (names_a_study(file) && !fs::exists(file, error))
+            throw UserError(fmt::format(
+                "{} is a study, no scene: studies run one at a time, all of them with raya study all", file));
+        scenes.push_back({file, read_scene(file, command.strict).scene});
+    }
     return scenes;
 }
 
@@ -64,12 +77,15 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted
     for (const Study& study : wanted)
         for (const char* end : {".md", ".json"}) files.push_back(study.name + end);
     if (wanted.size() > 1) files.emplace_back("index.md");
+    ProgressBar bar(true, "preparing");
     Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
-    prepare_folder(command.folder, files);
+    const StudyFolder made(command.folder, files);
     Laboratory laboratory(session, side);
     std::vector<StudyPage> pages;
     for (const Study& study : wanted) {
+        bar.stage("study " + study.name);
         pages.push_back(study.run(laboratory, scenes));
+        clear_status();
         print_page(pages.back(), write_page(command.folder, pages.back()), command.folder);
     }
     if (wanted.size() > 1) {
@@ -92,6 +108,7 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
     add_value(*command, "--size", options->size,
               "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");
+    add_strict_option(*command, options->strict);
     add_device_option(*command, options->device);
     command->callback([options, wanted] { run_studies(*options, wanted); });
 }

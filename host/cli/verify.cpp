@@ -12,6 +12,7 @@
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
+#include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/verify/worker.hpp"
@@ -40,25 +41,6 @@ struct VerifyCommand {
     }
 };
 
-// What runs now, on a terminal; the next line takes its place.
-class RunningLine {
-  public:
-    void show(const std::string& layer, const std::string& name, double seconds) {
-        if (!terminal_) return;
-        fmt::print(stderr, "\r\033[Krunning {} {} ... {:.0f} s", layer, name, seconds);
-        std::fflush(stderr);
-        drawn_ = true;
-    }
-    void clear() {
-        if (drawn_) fmt::print(stderr, "\r\033[K");
-        std::fflush(stderr);
-        drawn_ = false;
-    }
-
-  private:
-    bool terminal_ = isatty(STDERR_FILENO) != 0, drawn_ = false;
-};
-
 // "57 checks passed, 0 failed, 2 skipped in 12.3 s"
 std::string closing_text(const std::vector<Check>& checks, double seconds) {
     return fmt::format("{} checks passed, {} failed, {} skipped in {:.1f} s", count_of(checks, Outcome::kPass),
@@ -67,9 +49,9 @@ std::string closing_text(const std::vector<Check>& checks, double seconds) {
 
 DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
                         std::size_t& devices) {
-    RunningLine running;
+    const bool terminal = ::isatty(STDERR_FILENO) != 0;
     const auto print = [&](const std::string& line) {
-        running.clear();
+        clear_status();
         fmt::print("{}", line);
         std::fflush(stdout);
     };
@@ -80,8 +62,10 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
                     for (const std::string& line : left_out) print(line + "\n");
                 print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
             },
-        .running = [&](const std::string& layer, const std::string& name,
-                       double seconds) { running.show(layer, name, seconds); },
+        .running =
+            [&](const std::string& layer, const std::string& name, double seconds) {
+                if (terminal) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
+            },
         .finished = [&](const Check& check) { print(check_lines(check)); }};
     DeviceChecks result = supervise(command.arguments(), index, settings, sink, devices);
     print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));

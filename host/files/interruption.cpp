@@ -22,9 +22,8 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// Runs in whatever thread the signal finds; calls nothing but what a handler may call.
 extern "C" void remove_and_end(int signal) {
-    for (Slot& slot : slots)
-        if (slot.taken.load() && slot.name[0] != '\0') ::unlink(slot.name.data());
-    static const char kMessage[] = "\r\033[Kraya: interrupted\n";
+    remove_files_in_progress();
+    static constexpr char kMessage[] = "\r\033[Kraya: interrupted\n";
     constexpr std::size_t kClear = 4;  // wipes a progress bar off the line, on a terminal
     const std::size_t skipped = ::isatty(STDERR_FILENO) != 0 ? 0 : kClear;
     if (::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) ::_exit(128 + signal);
@@ -42,8 +41,13 @@ void handle(int signal) {
 
 }  // namespace
 
+void remove_files_in_progress() {
+    for (Slot& slot : slots)
+        if (slot.taken.load() && slot.name[0] != '\0') ::unlink(slot.name.data());
+}
+
 void end_cleanly_when_interrupted() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) handle(signal);
 }
 
 FileInProgress::FileInProgress(const std::filesystem::path& path) {

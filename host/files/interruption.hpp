@@ -4,6 +4,9 @@
 
 namespace raya {
 
+/// Removes all files in progress. May be called by a handler of signals.
+void remove_files_in_progress();
+
 /// From now on SIGINT, SIGTERM and SIGHUP remove files in progress, print "raya: interrupted" on stderr and end the
 /// process by that same signal, which a shell shows as exit code 130, 143 or 129. Signals that are ignored (nohup) stay
 /// so.

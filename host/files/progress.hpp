@@ -1,31 +1,49 @@
-// How far a render has come, and a progress bar for a person at a terminal.
+// How far a command has come, for a person at a terminal.
 #pragma once
 #include <chrono>
-#include <cstdio>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
 
 namespace raya {
 
-/// Called now and then with the share of the pixels that are done, 0..1.
+/// Called now and then with the share of the work that is done, 0..1.
 using ProgressCallback = std::function<void(double)>;
 
-/// Draws on stderr, only if that is a terminal, and only from one second on. Erased when it goes out of scope.
+/// Draws on stderr, only if that is a terminal: from one second on, five times a second, whatever the command is about. What
+/// runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of scope;
+/// who prints before that clears it (say.hpp).
 class ProgressBar {
   public:
-    explicit ProgressBar(bool wanted);
+    ProgressBar(bool wanted, const std::string& what);
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     /// Whether there is anybody to show it to.
-    bool active() const { return active_; }
+    bool active() const { return drawer_.joinable(); }
 
-    /// `done`: share of the work, 0..1.
+    /// What runs from now on, of which no share is known yet.
+    void stage(const std::string& what);
+
+    /// `done`: share of the stage, 0..1; less than before changes nothing.
     void update(double done);
 
   private:
-    std::chrono::steady_clock::time_point start_;
-    bool active_ = false, drawn_ = false;
+    using Clock = std::chrono::steady_clock;
+    void draw_until_ended();
+    std::string line(Clock::time_point now) const;
+
+    std::mutex mutex_;  // of all below
+    std::condition_variable end_;
+    bool ended_ = false;
+    std::string what_;
+    Clock::time_point stage_began_ = Clock::now();
+    std::optional<double> done_;
+    std::thread drawer_;
 };
 
 }  // namespace raya

@@ -68,19 +68,35 @@ struct Target {
     bool direct = false;  // a device or a pipe: written as it is
 };
 
+/// `path`, or what it names as a link, and so on.
+fs::path followed(const fs::path& path) {
+    constexpr int kMostLinks = 40;  // the kernel's own limit
+    fs::path file = path;
+    std::error_code error;
+    for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
+        if (links == kMostLinks) refuse(path, ELOOP);
+        const fs::path named = fs::read_symlink(file, error);
+        if (error) refuse(path, error.value());
+        file = named.is_absolute() ? named : folder_of(file) / named;
+    }
+    return file;
+}
+
 Target checked_target(const fs::path& path) {
     if (path.empty()) refuse(path, "the name is empty", "name a file");
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (fs::is_directory(status) || !path.has_filename()) refuse(path, "it is a folder", "name a file in it");
+    if (error && status.type() != fs::file_type::not_found) refuse(path, error.value());
     const bool exists = fs::exists(status);
     if (exists && !may(path, W_OK))
         refuse(path, "the file exists and is not writable", "change its permissions or name another file");
     if (exists && !fs::is_regular_file(status)) return {path, true};
-    const fs::path file = exists ? fs::canonical(path, error) : path;
-    if (exists && error) refuse(path, error.value());
+    const fs::path file = followed(path);
     check_folder(path, folder_of(file));
-    return {file, false};
+    const fs::path folder = fs::canonical(folder_of(file), error);
+    if (error) refuse(path, error.value());
+    return {folder / file.filename(), false};
 }
 
 /// Writes all bytes to the descriptor and closes it. Returns 0 or the errno of what failed.
@@ -129,6 +145,8 @@ void write_direct(const fs::path& path, std::string_view bytes) {
 }  // namespace
 
 void check_writable(const fs::path& path) { checked_target(path); }
+
+fs::path written_file(const fs::path& path) { return checked_target(path).file; }
 
 void write_whole_file(const fs::path& path, std::string_view bytes) {
     const Target target = checked_target(path);

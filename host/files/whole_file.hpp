@@ -10,8 +10,14 @@ namespace raya {
 /// that would rather fail before an hour's work than after it.
 void check_writable(const std::filesystem::path& path);
 
+/// The file that write_whole_file() would write for `path`: symbolic links followed, whether what they name is there or
+/// not, and the folder's own name in place of whatever leads to it. Two paths with the same one name the same file.
+/// Throws UserError as check_writable().
+std::filesystem::path written_file(const std::filesystem::path& path);
+
 /// Writes `bytes` to `path`: to a temporary name in the same folder, then renamed, so that nobody ever sees half a file
-/// and an old file stays as it was until the new one is complete. A symbolic link is followed; a device or a pipe
+/// and an old file stays as it was until the new one is complete. A symbolic link is followed, to a file that
+/// is not there too; a device or a pipe
 /// (`/dev/stdout`) is written directly, as there is nothing to rename. Throws UserError with file, reason and remedy,
 /// and then leaves nothing behind; nor does an interruption (interruption.hpp).
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);

@@ -2,13 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <string_view>
 
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/files/read_file.hpp"
 
 namespace raya {
 namespace {
@@ -19,15 +19,13 @@ std::string read_kernel_file(const std::string& file, const std::filesystem::pat
         if (found == embedded_files().end()) throw UserError(fmt::format("no kernel file '{}' in this program", file));
         return found->second;
     }
-    std::ifstream in(folder / file, std::ios::binary);
-    if (!in) {
+    try {
+        return read_file(folder / file);
+    } catch (const UnreadableFile& error) {
         throw UserError(
-            fmt::format("cannot read kernel file '{}': --kernel-dir must be a folder like the project's kernels/",
-                        (folder / file).string()));
+            fmt::format("cannot read kernel file '{}': {}; --kernel-dir must be a folder like the project's kernels/",
+                        (folder / file).string(), error.what()));
     }
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 // The kernel file that a line of `file` includes, as a path below kernels/; empty for any other line. What has no

@@ -13,6 +13,7 @@ struct DevicePeak {
     double divide_per_s = 0, root_per_s = 0;
     double copy_bytes_per_s = 0;   // read and written by copies from buffer to buffer
     std::uint64_t copy_bytes = 0;  // of each of these buffers
+    double scatter = 0;            // share by which the least of three measurements of fp32_per_s lies below the best
 };
 
 }  // namespace raya

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -47,6 +48,13 @@ NumberFormat parse_format(const std::string& text) {
 std::string format_name(const NumberFormat& format) {
     if (format.is_fp32()) return "fp32";
     return fmt::format("e{}m{}{}", format.exponent_bits, format.fraction_bits, format.truncates ? "t" : "");
+}
+
+double smallest_number(const NumberFormat& format) { return std::ldexp(1.0, 2 - (1 << (format.exponent_bits - 1))); }
+
+double farthest_hit(const NumberFormat& format) {
+    constexpr int kOfFp32 = 60;
+    return std::ldexp(1.0, std::min((1 << (format.exponent_bits - 2)) - 1, kOfFp32));
 }
 
 float round_to_format(double value, const NumberFormat& format) {

@@ -21,6 +21,12 @@ NumberFormat parse_format(const std::string& text);
 /// "fp32", "e6m15", "e6m15t".
 std::string format_name(const NumberFormat& format);
 
+/// The smallest number above zero that every operation keeps; fp32's denormals are not counted.
+double smallest_number(const NumberFormat& format);
+
+/// Farthest distance at which a hit counts (RAYA_FAR of kernels/number/): its square is still in the format.
+double farthest_hit(const NumberFormat& format);
+
 /// The number of the format for `value`: rounded once, saturated at the largest number, flushed to zero below the
 /// smallest. Throws std::invalid_argument for NaN.
 float round_to_format(double value, const NumberFormat& format);

@@ -2,14 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include "host/error.hpp"
 #include "host/files/json.hpp"
+#include "host/files/read_file.hpp"
 
 namespace raya {
 namespace {
@@ -70,12 +67,11 @@ BenchReport report_of(const Json& json) {
 }
 
 std::string contents(const fs::path& path) {
-    std::error_code error;
-    if (!fs::exists(path, error)) refuse(path, "no such file");
-    if (fs::is_directory(path, error)) refuse(path, "it is a folder");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) refuse(path, "cannot be read: " + std::generic_category().message(errno));
-    return {std::istreambuf_iterator<char>(file), {}};
+    try {
+        return read_file(path);
+    } catch (const UnreadableFile& error) {
+        refuse(path, fmt::format("cannot be read: {}", error.what()));
+    }
 }
 
 bool can_be_a_time(double seconds) { return std::isfinite(seconds) && seconds > 0; }

@@ -4,10 +4,18 @@
 
 #include "host/files/json.hpp"
 #include "host/machine/budget.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/report/profile_table.hpp"
 
 namespace raya {
 namespace {
+
+Json skipped_json(const std::vector<NffRemark>& skipped) {
+    Json json = Json::list();
+    for (const NffRemark& remark : skipped)
+        json.push_back({{"what", remark.what}, {"count", remark.count}, {"line", remark.line}});
+    return json;
+}
 
 Json load_json(const Load& load) {
     return {{"unit", "cycles"},
@@ -94,6 +102,7 @@ Json machine_json(const RenderReport& r) {
             {"offset", r.machine.offset ? Json(*r.machine.offset) : Json()},
             {"fold", r.machine.fold ? Json(*r.machine.fold) : Json()},
             {"format", r.machine.format},
+            {"length_exponent", r.machine.length_exponent},
             {"bounces", r.machine.bounces},
             {"pe_memory_bytes", r.machine.pe_memory_bytes ? Json(r.machine.pe_memory_bytes) : Json()},
             {"pe_memory_used_bytes", r.machine.pe_memory_used_bytes}};
@@ -127,6 +136,8 @@ Json to_json(const RenderReport& r) {
     const EventCounts& e = r.events;
     Json json;
     json["scene"] = r.scene;
+    json["warnings"] = r.warnings;
+    json["skipped"] = skipped_json(r.skipped);
     json["image"] = {
         {"width", r.image.width}, {"height", r.image.height}, {"file", r.image.file}, {"hash", r.image.hash}};
     json["machine"] = machine_json(r);
@@ -176,9 +187,9 @@ std::string model_line(const RenderReport& r) {
     if (!r.modelled) return {};
     const ModelledTime& t = *r.modelled;
     return fmt::format(
-        "model   objects {:.1f} ms, compute {:.1f} ms, communication {:.1f} ms, image {:.1f} ms: {:.1f} ms "
-        "(modelled time of {})\n",
-        t.objects_ms, t.compute_ms, t.communication_ms, t.image_ms, t.total_ms, r.machine.name);
+        "model   objects {}, compute {}, communication {}, image {}: {} (modelled time of {})\n",
+        time_text(t.objects_ms), time_text(t.compute_ms), time_text(t.communication_ms), time_text(t.image_ms),
+        time_text(t.total_ms), r.machine.name);
 }
 
 // Machine and what lies where.
@@ -199,11 +210,16 @@ std::string accel_line(const RenderReport& r) {
                        static_cast<double>(test_count(e)) / rays, static_cast<double>(e[RAYA_STEPS]) / rays);
 }
 
+std::string scale_line(const RenderReport& r) {
+    if (r.machine.length_exponent == 0) return {};
+    return fmt::format("scale   lengths x 2^{}, into the range of {}\n", r.machine.length_exponent, r.machine.format);
+}
+
 std::string memory_line(const RenderReport& r) {
     return fmt::format(
-        "memory  {:.1f} KB in {}{}{}\n", static_cast<double>(r.machine.pe_memory_used_bytes) / 1024,
+        "memory  {} in {}{}{}\n", needed_text(r.machine.pe_memory_used_bytes),
         r.torus ? "the fullest node" : "each PE",
-        r.machine.pe_memory_bytes ? fmt::format(" of {} KB", r.machine.pe_memory_bytes / 1024) : ", no limit",
+        r.machine.pe_memory_bytes ? fmt::format(" of {}", present_text(r.machine.pe_memory_bytes)) : ", no limit",
         r.torus ? torus_memory_text(*r.torus) : "");
 }
 
@@ -219,9 +235,10 @@ std::string human_summary(const RenderReport& r) {
                         e[RAYA_REFLECTED], e[RAYA_REFRACTED], e[RAYA_SHADOW]);
     text += load_line("load", r.load, r.requests ? ", simulated" : "");
     text += r.torus ? torus_lines(*r.torus) : antialias_lines(r) + model_line(r);
-    text += accel_line(r) + memory_line(r);
-    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {:.1f} Mrays/s on {} ({} lanes)\n",
-                        r.measured.build_s, r.measured.render_s, static_cast<double>(rays) / r.measured.render_s * 1e-6,
+    text += accel_line(r) + scale_line(r) + memory_line(r);
+    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({} lanes)\n",
+                        r.measured.build_s, r.measured.render_s,
+                        rate_text(static_cast<double>(rays) / r.measured.render_s),
                         r.device.name, r.device.lanes);
     text += fmt::format("image   {} ({})\n", r.image.file, r.image.hash);
     return text;

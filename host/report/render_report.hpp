@@ -15,6 +15,7 @@
 #include "host/machine/time_model.hpp"
 #include "host/report/roofline.hpp"
 #include "host/report/torus_report.hpp"
+#include "host/scene/nff_reader.hpp"
 
 namespace raya {
 
@@ -44,6 +45,8 @@ struct ProgramBuild {
 
 struct RenderReport {
     std::string scene;
+    std::vector<std::string> warnings;  // what was said on stderr
+    std::vector<NffRemark> skipped;     // what the scene's file has and the scene has not
 
     struct {
         int width = 0, height = 0;  // pixels
@@ -58,6 +61,7 @@ struct RenderReport {
         std::uint32_t pes = 0;
         std::optional<std::uint32_t> offset;  // p of a mapping with slots
         std::uint32_t bounces = 0;
+        int length_exponent = 0;            // lengths of the scene are multiplied by 2^this (host/scene/length_scale.hpp)
         std::uint64_t pe_memory_bytes = 0;  // 0: no limit
         std::uint64_t pe_memory_used_bytes = 0;
     } machine;

@@ -130,7 +130,8 @@ Json peak_json(const DevicePeak& p) {
             {"format_divisions_per_s", p.divide_per_s},
             {"format_roots_per_s", p.root_per_s},
             {"copy_bytes_per_s", p.copy_bytes_per_s},
-            {"copy_buffer_bytes", p.copy_bytes}};
+            {"copy_buffer_bytes", p.copy_bytes},
+            {"scatter", p.scatter}};
 }
 
 Json roofline_json(const Roofline& roofline) {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "host/files/json.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/machine/budget.hpp"
 #include "host/machine/t805.hpp"
 
@@ -90,9 +91,10 @@ std::string torus_lines(const TorusReport& t) {
     const TorusTime& m = t.modelled;
     return text +
            fmt::format(
-               "model   {:.1f} ms if nothing waits (processors {:.1f} ms: compute {:.1f} ms, messages {:.1f} ms; "
-               "links {:.1f} ms), {:.1f} ms step by step (modelled time of T805s)\n",
-               m.overlapped_ms, m.processor_ms, m.compute_ms, m.messages_ms, m.links_ms, m.stepwise_ms);
+               "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step "
+               "(modelled time of T805s)\n",
+               time_text(m.overlapped_ms), time_text(m.processor_ms), time_text(m.compute_ms),
+               time_text(m.messages_ms), time_text(m.links_ms), time_text(m.stepwise_ms));
 }
 
 std::string torus_memory_text(const TorusReport& t) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/machine/unit_text.hpp"
 #include "host/machine/does_not_fit.hpp"
 
 namespace raya {
@@ -15,10 +16,10 @@ constexpr std::uint64_t kPixelBytes = 12;
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
                          const std::string& remedy) {
-    throw DoesNotFit(
-        fmt::format("{}: needs {:.1f} KB in every PE, a PE of {} has {} KB; use {}--machine grande", what,
-                    static_cast<double>(bytes) / 1024, machine.title, *machine.pe_memory_bytes / 1024, remedy),
-        bytes, *machine.pe_memory_bytes);
+    const char* other = machine.name == "grande" ? "a larger --pe-memory, or none" : "--machine grande";
+    throw DoesNotFit(fmt::format("{}: needs {} in every PE, a PE of {} has {}; use {}{}", what, needed_text(bytes),
+                                 machine.title, present_text(*machine.pe_memory_bytes), remedy, other),
+                     bytes, *machine.pe_memory_bytes);
 }
 
 }  // namespace

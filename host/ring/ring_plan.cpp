@@ -15,12 +15,13 @@ bool words_local(const PackedJob& job, const DeviceInfo& device, bool accel) {
 
 }  // namespace
 
-JobSettings job_settings(const RingSettings& settings) {
+JobSettings job_settings(const RingSettings& settings, const LengthScale& scale) {
     return {{settings.mapping.width, settings.mapping.height},
             settings.sampling,
             settings.bounces,
             cycles_of_events(),
-            settings.format};
+            settings.format,
+            scale.exponent};
 }
 
 RingSettings checked(RingSettings settings, const DeviceInfo& device) {
@@ -43,8 +44,7 @@ std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, st
     return std::clamp(affordable, std::min(8 * lanes, share), share);
 }
 
-KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const Scene& scene,
-                             const DeviceInfo& device) {
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const DeviceInfo& device) {
     return {.lanes = settings.kernels.lanes,
             .group_size = settings.kernels.group_size,
             .bounces = settings.bounces,
@@ -53,8 +53,8 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .exact_fma = settings.kernels.exact_arithmetic,
             .words_local = settings.kernels.local_words && words_local(job, device, settings.accel.grid),
             .accel = settings.accel.grid,
-            .filter = settings.kernels.filter && !scene.spheres.empty() &&
-                      sphere_filter_holds(settings.format, scene_extent(scene)),
+            .filter = settings.kernels.filter && job.header().objects.spheres > 0 &&
+                      sphere_filter_holds(settings.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones()};

@@ -3,12 +3,12 @@
 #include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/ring/ring_settings.hpp"
+#include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
-#include "host/scene/scene.hpp"
 
 namespace raya {
 
-JobSettings job_settings(const RingSettings& settings);
+JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
 
 /// The settings with lanes and group size chosen. UserError, before anything is packed or taken, if the kernels cannot
 /// be built with them.
@@ -19,7 +19,6 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device);
 /// wait for the last.
 std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
 
-KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const Scene& scene,
-                             const DeviceInfo& device);
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const DeviceInfo& device);
 
 }  // namespace raya

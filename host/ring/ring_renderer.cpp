@@ -17,9 +17,9 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings) {
+PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
     const StepLog::Step step = session.step("pack scene");
-    PackedJob job = pack_job(scene, job_settings(settings));
+    PackedJob job = pack_job(scene, job_settings(settings, scale));
     raya_job on_ring = job.header();
     on_ring.mapping = settings.mapping;
     job.set_header(on_ring);
@@ -27,8 +27,8 @@ PackedJob packed(const Session& session, const Scene& scene, const RingSettings&
 }
 
 // What every PE holds of the scene.
-RingJob ring_job(const Session& session, const Scene& scene, const RingSettings& settings) {
-    RingJob all{packed(session, scene, settings), {}};
+RingJob ring_job(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
+    RingJob all{packed(session, scene, settings, scale), {}};
     if (!settings.accel.grid) return all;
     const StepLog::Step step = session.step("divide scene");
     all.grid = append_grid(all.job, accel_partition(all.job, settings.format, settings.accel));
@@ -65,7 +65,8 @@ void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, cons
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
     : session_(session),
       settings_(checked(settings, session.device())),
-      job_(ring_job(session, scene, settings_)),
+      scale_(length_scale(scene, settings_.format)),
+      job_(ring_job(session, scene, settings_, scale_)),
       share_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, {.scene = scene.name,
                                                  .job_words = job_.job.words().size(),
@@ -82,7 +83,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 void RingRenderer::build(const Scene& scene) {
     const StepLog::Step building = session_.step("set up device");
     const Clock::time_point start = Clock::now();
-    const KernelOptions options = kernel_options(settings_, job_.job, scene, session_.device());
+    const KernelOptions options = kernel_options(settings_, job_.job, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
         kernels, settings_.mapping.pes, memory_.block_pixels,
@@ -243,6 +244,7 @@ void RingRenderer::simulate_schedule(RingResult& result) {
 
 void RingRenderer::describe(RingResult& result) {
     result.all.name = "all";
+    result.scale = scale_;
     result.communication = communication_;
     result.pe_memory = memory_;
     if (settings_.accel.grid) result.accel = job_.grid;

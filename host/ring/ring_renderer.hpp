@@ -11,6 +11,7 @@
 #include "host/ring/ring_result.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/ring/tracer.hpp"
+#include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 
@@ -31,6 +32,9 @@ class RingRenderer {
     /// One image. May be called again: the pixels are the same, the times are those of this call.
     RingResult render(const ProgressCallback& progress = {});
 
+    /// By what the scene's lengths are multiplied.
+    const LengthScale& scale() const { return scale_; }
+
   private:
     void build(const Scene& scene);
     void build_exchange(KernelOptions options);
@@ -46,6 +50,7 @@ class RingRenderer {
 
     Session& session_;
     RingSettings settings_;  // lanes and group size chosen
+    LengthScale scale_;
     RingJob job_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;

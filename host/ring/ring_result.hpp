@@ -13,6 +13,7 @@
 #include "host/machine/machine.hpp"
 #include "host/ring/cost_image.hpp"
 #include "host/ring/pe_memory.hpp"
+#include "host/scene/length_scale.hpp"
 
 namespace raya {
 
@@ -35,6 +36,7 @@ struct RingResult {
     std::uint64_t recomputed = 0;           // pixels supersampled
     std::optional<std::uint64_t> requests;  // of a simulated dynamic distribution
     Communication communication;
+    LengthScale scale;
     PeMemory pe_memory;
     std::optional<AccelSummary> accel;  // of the grid that rays walked
     bool words_local = true;            // PEs copied the broadcast words into local memory at each launch

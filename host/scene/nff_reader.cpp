@@ -5,19 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <bitset>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <filesystem>
 #include <optional>
-#include <system_error>
 #include <utility>
 
-#include "host/error.hpp"
+#include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_tokens.hpp"
 #include "host/scene/outline.hpp"
+#include "host/scene/polygon_plane.hpp"
+#include "host/scene/triangulate.hpp"
 
 namespace raya {
 namespace {
@@ -36,7 +34,8 @@ std::string lower_case(std::string_view text) {
 
 class NffReader {
   public:
-    NffReader(std::string_view text, const std::string& name) : tokens_(text, name) {
+    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<NffRemark>* remarks)
+        : tokens_(text, name, first_line), remarks_(remarks) {
         scene_.name = std::filesystem::path(name).filename().string();
         scene_.surfaces.emplace_back();  // for objects before the first `f`
     }
@@ -57,6 +56,13 @@ class NffReader {
 
   private:
     [[noreturn]] void refuse(std::string_view reason) const { tokens_.refuse(tokens_.entity_line(), reason); }
+
+    /// Something that cannot be traced, but left out or mended: `what` says what becomes of it. Refused where there is no
+    /// place for remarks.
+    void pass_over(std::string_view reason, const std::string& what) {
+        if (!remarks_) refuse(reason);
+        add_remark(*remarks_, what, tokens_.entity_line());
+    }
 
     Vec3 read_vector(std::string_view what) {
         const double x = tokens_.take_number(what);
@@ -97,6 +103,9 @@ class NffReader {
         for (const Entity& entity : kEntities)
             if (entity.keyword == keyword) return (this->*entity.read)();
         if (number) refuse(in_quotes(keyword) + " where an entity should start: has the one before too many numbers?");
+        if (remarks_ && tokens_.skip_unknown())
+            return add_remark(*remarks_, "entity " + in_quotes(keyword) + " of another dialect, skipped",
+                              tokens_.entity_line());
         refuse("unknown entity " + in_quotes(keyword) + "; NFF has v b l f s p pp c");
     }
 
@@ -184,7 +193,8 @@ class NffReader {
     void read_sphere() {
         Sphere sphere{read_vector("the centre"), 0, current_surface_};
         sphere.radius = tokens_.take_number("the radius");
-        if (std::abs(sphere.radius) < kSmallestLength) refuse("the radius of the sphere is zero");
+        if (std::abs(sphere.radius) < kSmallestLength)
+            return pass_over("the radius of the sphere is zero", "sphere of radius 0, left out");
         scene_.spheres.push_back(sphere);
     }
 
@@ -193,7 +203,8 @@ class NffReader {
 
     void read_polygon(bool patch) {
         Polygon polygon;
-        const auto count = static_cast<std::size_t>(tokens_.take_integer("the number of vertices", 3, kMostVertices));
+        const int fewest = remarks_ ? 0 : 3;
+        const auto count = static_cast<std::size_t>(tokens_.take_integer("the number of vertices", fewest, kMostVertices));
         const std::size_t shortest = patch ? 12 : 6;  // characters: one digit and one blank for each number
         if (count > tokens_.characters_left() / shortest + 2)
             refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
@@ -201,12 +212,33 @@ class NffReader {
             polygon.vertices.push_back(read_vector("a vertex"));
             if (!patch) continue;
             polygon.normals.push_back(unit_vector(read_vector("a normal")));
-            if (polygon.normals.back() == Vec3(0)) refuse("a normal of the patch is zero");
         }
-        const std::string reason = tidy_outline(polygon);
-        if (!reason.empty()) refuse("the polygon " + reason);
         polygon.surface = take_flat_surface();
-        scene_.polygons.push_back(std::move(polygon));
+        if (std::find(polygon.normals.begin(), polygon.normals.end(), Vec3(0)) != polygon.normals.end()) {
+            pass_over("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
+            polygon.normals.clear();
+        }
+        add_polygon(std::move(polygon));
+    }
+
+    void add_polygon(Polygon polygon) {
+        const OutlineVerdict verdict = tidy_outline(polygon);
+        if (verdict.fault == OutlineFault::kNoArea)
+            return pass_over("the polygon " + verdict.reason, "polygon without area, left out");
+        if (verdict.fault == OutlineFault::kNone) {
+            scene_.polygons.push_back(std::move(polygon));
+            return;
+        }
+        pass_over("the polygon " + verdict.reason, "polygon that is not flat, cut into triangles");
+        for (const std::array<int, 3>& corners : triangulate(polygon.vertices, newell_normal(polygon.vertices))) {
+            Polygon triangle{{}, {}, polygon.surface};
+            for (const int corner : corners) {
+                triangle.vertices.push_back(polygon.vertices[static_cast<std::size_t>(corner)]);
+                if (!polygon.normals.empty())
+                    triangle.normals.push_back(polygon.normals[static_cast<std::size_t>(corner)]);
+            }
+            add_polygon(std::move(triangle));  // which is flat
+        }
     }
 
     void read_cone() {
@@ -217,9 +249,11 @@ class NffReader {
         cone.apex_radius = tokens_.take_number("the apex radius");
         cone.surface = current_surface_;
         const auto [lower, upper] = std::minmax(cone.base_radius, cone.apex_radius);
-        if (std::max(-lower, upper) < kSmallestLength) refuse("both radii of the cone are zero");
+        if (std::max(-lower, upper) < kSmallestLength)
+            return pass_over("both radii of the cone are zero", "cone without radius, left out");
         if (lower < 0 && upper > 0) refuse("one radius of the cone is negative, the other positive");
-        if ((cone.apex - cone.base).length() < kSmallestLength) refuse("the height of the cone is zero");
+        if ((cone.apex - cone.base).length() < kSmallestLength)
+            return pass_over("the height of the cone is zero", "cone without height, left out");
         scene_.cones.push_back(cone);
     }
 
@@ -251,6 +285,7 @@ class NffReader {
     }
 
     NffTokens tokens_;
+    std::vector<NffRemark>* remarks_;  // none: everything is refused
     Scene scene_;
     bool has_view_ = false, has_background_ = false;
     int current_surface_ = 0;
@@ -260,23 +295,10 @@ class NffReader {
 
 }  // namespace
 
-Scene parse_nff(std::string_view text, const std::string& name) { return NffReader(text, name).read(); }
-
-Scene read_nff(const std::filesystem::path& path) {
-    const auto refuse = [&](std::string_view reason) -> void {
-        throw UserError(fmt::format("{}: cannot read the scene: {}", path.string(), reason));
-    };
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (error) refuse(error.message());
-    if (std::filesystem::is_directory(status)) refuse("it is a folder; name an NFF file in it");
-    if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) refuse("it is not a file");
-
-    std::ifstream file(path, std::ios::binary);
-    if (!file) refuse(std::strerror(errno));
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (file.bad()) refuse(std::strerror(errno));
-    return parse_nff(text, path.string());
+Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks) {
+    const Header header = remarks ? mail_header(text) : Header{};
+    if (header.bytes > 0) add_remark(*remarks, "mail header before the scene, skipped", 1);
+    return NffReader(text.substr(header.bytes), name, 1 + header.lines, remarks).read();
 }
 
 }  // namespace raya

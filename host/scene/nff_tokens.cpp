@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/error.hpp"
+#include "host/scene/nff_dialects.hpp"
 
 namespace raya {
 namespace {
@@ -36,6 +37,8 @@ ParsedNumber parsed_number(std::string_view text) {
 
 }  // namespace
 
+bool reads_as_number(std::string_view text) { return parsed_number(text).error != std::errc::invalid_argument; }
+
 std::string in_quotes(std::string_view text) {
     constexpr std::size_t kShown = 24;
     std::string shown = "'";
@@ -43,7 +46,8 @@ std::string in_quotes(std::string_view text) {
     return shown + (text.size() > kShown ? "...'" : "'");
 }
 
-NffTokens::NffTokens(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
+NffTokens::NffTokens(std::string_view text, std::string name, int first_line)
+    : text_(text), name_(std::move(name)), line_(first_line) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
     advance();
@@ -120,7 +124,15 @@ std::string_view NffTokens::take_word(std::string_view what) {
     return token.text;
 }
 
-bool NffTokens::number_follows() const { return parsed_number(next_.text).error != std::errc::invalid_argument; }
+bool NffTokens::skip_unknown() {
+    const std::size_t at = position_ - next_.text.size();
+    const std::string_view line = text_.substr(at, text_.find_first_of("\r\n", at) - at);
+    if (!reads_as_entity(entity_, next_.first_on_line ? std::string_view() : line)) return false;
+    while (!next_.text.empty() && (!next_.first_on_line || number_follows())) advance();
+    return true;
+}
+
+bool NffTokens::number_follows() const { return reads_as_number(next_.text); }
 
 double NffTokens::take_number(std::string_view what) {
     const bool cut_short = !number_follows() && next_.first_on_line && !one_line_;

@@ -20,8 +20,9 @@ struct NffToken {
 /// Lines may end in LF, CR LF or CR. Every refusal is a UserError "NAME:LINE: reason".
 class NffTokens {
   public:
-    /// `text` must outlive this object. Refuses a text with control characters: it is a binary file.
-    NffTokens(std::string_view text, std::string name);
+    /// `text` must outlive this object; its lines are counted from `first_line`. Refuses a text with control characters:
+    /// it is a binary file.
+    NffTokens(std::string_view text, std::string name, int first_line = 1);
 
     /// The next token, which stays the next one.
     const NffToken& peek() const { return next_; }
@@ -38,6 +39,10 @@ class NffTokens {
 
     /// Takes a number that must be whole and lie in [lowest, highest].
     int take_integer(std::string_view what, int lowest, int highest);
+
+    /// Takes the rest of an entity that raya does not know: of its line, and all lines after it that begin with a number.
+    /// False where that line does not read as an entity; then nothing is taken.
+    bool skip_unknown();
 
     /// Whether the next token reads as a number, be it a good one or not.
     bool number_follows() const;
@@ -67,6 +72,9 @@ class NffTokens {
     int entity_line_ = 1;
     bool one_line_ = false;
 };
+
+/// Whether a word reads as a number, be it a good one or not.
+bool reads_as_number(std::string_view word);
 
 /// The text in quotes, shortened, with characters that cannot be shown as '?'.
 std::string in_quotes(std::string_view text);

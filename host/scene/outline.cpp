@@ -35,10 +35,10 @@ Vec3 unit_vector(const Vec3& v) {
     return scaled / scaled.length();
 }
 
-std::string tidy_outline(Polygon& polygon) {
+OutlineVerdict tidy_outline(Polygon& polygon) {
     drop_repeats(polygon);
     const std::vector<Vec3>& vertices = polygon.vertices;
-    if (vertices.size() < 3) return "has fewer than three different vertices";
+    if (vertices.size() < 3) return {OutlineFault::kNoArea, "has fewer than three different vertices"};
 
     double size = 0, reach = 0;
     Vec3 mean(0);
@@ -49,21 +49,22 @@ std::string tidy_outline(Polygon& polygon) {
         }
         mean += (v - vertices[0]) / static_cast<double>(vertices.size());
     }
-    if (size < kSmallestLength) return fmt::format("is smaller than {}; scale the scene", kSmallestLength);
+    if (size < kSmallestLength)
+        return {OutlineFault::kNoArea, fmt::format("is smaller than {}; scale the scene", kSmallestLength)};
 
     // What rounding alone can make of vertices that lie on one line.
     const double no_area = 1e-12 * size * size + 8 * kEpsilon * reach * size;
     const Vec3 normal = newell_normal(vertices);
-    if (normal.length() <= no_area) return "has no area";
+    if (normal.length() <= no_area) return {OutlineFault::kNoArea, "has no area"};
 
     double off = 0;
     for (const Vec3& v : vertices)
         off = std::max(off, std::abs((v - vertices[0] - mean).dot(normal) / normal.length()));
     if (off > kFlatness * size)
-        return fmt::format(
-            "is not flat: a vertex lies {:.3g} off its plane, at most {:.3g} ({} of its size) is "
-            "allowed; cut it into triangles",
-            off, kFlatness * size, kFlatness);
+        return {OutlineFault::kNotFlat,
+                fmt::format("is not flat: a vertex lies {:.3g} off its plane, at most {:.3g} ({} of its size) is "
+                            "allowed; cut it into triangles",
+                            off, kFlatness * size, kFlatness)};
     return {};
 }
 

@@ -13,9 +13,16 @@ inline constexpr double kSmallestLength = 1e-9;
 /// box). Files of six digits stray by some 1e-5; a thousandth is a pixel where the polygon spans 1,000.
 inline constexpr double kFlatness = 1e-3;
 
-/// Drops vertices that repeat their neighbour, with their normals. Returns why the rest is no polygon, or nothing:
-/// fewer than three vertices, no area, or vertices off the plane. Whether the outline crosses itself is not looked at.
-std::string tidy_outline(Polygon& polygon);
+enum class OutlineFault { kNone, kNoArea, kNotFlat };
+
+/// What is wrong with an outline, and that as the end of a sentence that begins "the polygon".
+struct OutlineVerdict {
+    OutlineFault fault = OutlineFault::kNone;
+    std::string reason;
+};
+
+/// Drops vertices that repeat their neighbour, with their normals. Whether the outline crosses itself is not looked at.
+OutlineVerdict tidy_outline(Polygon& polygon);
 
 /// `v` with length 1. A vector that has it already, to rounding, is left as it is, so that a scene survives being
 /// written and read. The zero vector is returned as it is.

@@ -15,22 +15,27 @@
 namespace raya {
 namespace {
 
-// Words of one format.
-class Words : public std::vector<std::uint32_t> {
-  public:
-    explicit Words(const NumberFormat& format) : format_(format) {}
-    const NumberFormat& format() const { return format_; }
+// Words of one format, with lengths of one scale.
+struct Words : std::vector<std::uint32_t> {
+    NumberFormat format;
+    double unit;  // what a length of 1 in the scene is in the job: a power of two
 
-  private:
-    NumberFormat format_;
+    Words(const NumberFormat& of_numbers, double of_lengths) : format(of_numbers), unit(of_lengths) {}
 };
 
 void put(Words& words, double value) {
-    words.push_back(std::bit_cast<std::uint32_t>(round_to_format(value, words.format())));
+    words.push_back(std::bit_cast<std::uint32_t>(round_to_format(value, words.format)));
 }
 void put(Words& words, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(words, v[axis]);
 }
+// A length, a place, the square of a length, a number per length; put() takes what has no length in it.
+template <class Value>
+void put_length(Words& words, const Value& value) {
+    put(words, words.unit * value);
+}
+void put_square(Words& words, double value) { put(words, words.unit * words.unit * value); }
+void put_per_length(Words& words, const Vec3& v) { put(words, v / words.unit); }
 void put_index(Words& words, std::size_t value) { words.push_back(static_cast<std::uint32_t>(value)); }
 
 void store(float (&to)[3], const Vec3& from, const NumberFormat& format) {
@@ -47,7 +52,7 @@ void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
     const Vec3 right = gaze.cross(view.up).normalized(), top = right.cross(gaze);
     const double half_height = std::tan(view.angle_degrees * std::numbers::pi / 360);
     const double step = 2 * half_height / rows;  // pixels are square
-    store(job.eye, view.from, settings.format);
+    store(job.eye, std::ldexp(1.0, settings.length_exponent) * view.from, settings.format);
     store(job.column_step, step * right, settings.format);
     store(job.row_step, -step * top, settings.format);
     store(job.corner,
@@ -61,7 +66,7 @@ void pack_surface(Words& words, const Surface& s) {
     put(words, checker.even);
     for (const double value : {s.diffuse, s.specular, s.shine, s.transmittance, s.refraction}) put(words, value);
     put(words, checker.odd);
-    put(words, checker.size);
+    put_length(words, checker.size);
 }
 
 // A flat polygon of its own in the packed scene: a whole polygon, or one triangle of a patch.
@@ -97,7 +102,8 @@ void pack_edges(Words& words, const Face& face, int axis) {
         Point2 high = outline_point(face.polygon->vertices[face.corners[(i + 1) % face.corners.size()]], axis);
         if (low.v > high.v) std::swap(low, high);  // neighbours that share an edge then compute the same border
         const double slope = high.v > low.v ? (high.u - low.u) / (high.v - low.v) : 0;
-        for (const double value : {low.u, low.v, high.v, slope}) put(words, value);
+        for (const double length : {low.u, low.v, high.v}) put_length(words, length);
+        put(words, slope);
     }
 }
 
@@ -109,23 +115,23 @@ void pack_patch(Words& words, const Face& face, int axis) {
     const Point2 b{corner(1).u - a.u, corner(1).v - a.v}, c{corner(2).u - a.u, corner(2).v - a.v};
     const Vec3 nb = normal(1) - normal(0), nc = normal(2) - normal(0);
     const double area = b.u * c.v - b.v * c.u;
-    put(words, a.u);
-    put(words, a.v);
+    put_length(words, a.u);
+    put_length(words, a.v);
     put(words, normal(0));
-    put(words, area != 0 ? (c.v * nb - b.v * nc) / area : Vec3(0));
-    put(words, area != 0 ? (b.u * nc - c.u * nb) / area : Vec3(0));
+    put_per_length(words, area != 0 ? (c.v * nb - b.v * nc) / area : Vec3(0));
+    put_per_length(words, area != 0 ? (b.u * nc - c.u * nb) / area : Vec3(0));
 }
 
-void pack_faces(Words& words, const std::vector<Face>& faces, const Words& surface_at) {
+void pack_faces(Words& words, const std::vector<Face>& faces, const std::vector<std::uint32_t>& surface_at) {
     const std::size_t polygons_at = words.size();
     words.resize(polygons_at + faces.size() * RAYA_POLYGON_WORDS);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Polygon& polygon = *faces[i].polygon;
         const Vec3 normal = newell_normal(polygon.vertices).normalized();
         const int axis = dropped_axis(normal);
-        Words record(words.format());
+        Words record(words.format, words.unit);
         put(record, normal);
-        put(record, normal.dot(polygon.vertices[0]));
+        put_length(record, normal.dot(polygon.vertices[0]));
         record.push_back(surface_at[polygon.surface]);
         put_index(record, axis);
         put_index(record, faces[i].corners.size());
@@ -138,14 +144,14 @@ void pack_faces(Words& words, const std::vector<Face>& faces, const Words& surfa
     }
 }
 
-void pack_cone(Words& words, const Cone& c, const Words& surface_at) {
+void pack_cone(Words& words, const Cone& c, const std::vector<std::uint32_t>& surface_at) {
     const Vec3 along = c.apex - c.base;
     const double height = along.length(), r0 = std::abs(c.base_radius), r1 = std::abs(c.apex_radius);
-    put(words, c.base);
-    put(words, r0);
+    put_length(words, c.base);
+    put_length(words, r0);
     words.push_back(surface_at[c.surface]);
     put(words, along / height);
-    put(words, height);
+    put_length(words, height);
     put(words, (r1 - r0) / height);
     put_index(words, c.base_radius < 0 || c.apex_radius < 0 ? 1 : 0);
 }
@@ -177,34 +183,34 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     pack_camera(job, scene.view, settings);
     store(job.background, scene.background, settings.format);
     job.ambient = round_to_format(ambient_intensity(scene), settings.format);
-    job.extent = round_to_format(scene_extent(scene), settings.format);
+    job.extent = round_to_format(std::ldexp(scene_extent(scene), settings.length_exponent), settings.format);
 
-    Words words(settings.format);
+    Words words(settings.format, std::ldexp(1.0, settings.length_exponent));
     words.resize(kWordsOf<raya_job>);
-    Words surface_at(settings.format);
+    std::vector<std::uint32_t> surface_at;
     for (const Surface& s : scene.surfaces) {
-        put_index(surface_at, words.size());
+        surface_at.push_back(static_cast<std::uint32_t>(words.size()));
         pack_surface(words, s);
     }
     const auto here = [&] { return static_cast<std::uint32_t>(words.size()); };
     job.lights = static_cast<std::uint32_t>(scene.lights.size());
     job.lights_at = here();
     for (const Light& light : scene.lights) {
-        put(words, light.position);
+        put_length(words, light.position);
         put(words, light_colour(scene, light));
     }
     job.objects.spheres = static_cast<std::uint32_t>(scene.spheres.size());
     job.objects.spheres_at = here();
     for (const Sphere& s : scene.spheres) {
-        put(words, s.centre);
-        put(words, std::copysign(s.radius * s.radius, s.radius));
+        put_length(words, s.centre);
+        put_square(words, std::copysign(s.radius * s.radius, s.radius));
         words.push_back(surface_at[s.surface]);
     }
     job.objects.planes = static_cast<std::uint32_t>(scene.planes.size());
     job.objects.planes_at = here();
     for (const Plane& p : scene.planes) {
         put(words, p.normal);
-        put(words, p.distance);
+        put_length(words, p.distance);
         words.push_back(surface_at[p.surface]);
     }
     job.objects.cones = static_cast<std::uint32_t>(scene.cones.size());

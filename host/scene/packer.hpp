@@ -21,6 +21,7 @@ struct JobSettings {
     std::uint32_t bounces = 8;
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
     NumberFormat format{};                            // of every number in the job
+    int length_exponent = 0;                          // every length is multiplied by 2^this; see length_scale()
 };
 
 /// A job's words, and the header with which they open.

@@ -23,13 +23,14 @@ struct Pass {
     bool first;
     const CostImage& image;
 
-    std::optional<double> paper(double value) const { return first ? std::optional<double>(value) : std::nullopt; }
+    bool in_paper() const { return first && as_in_paper(scene, size); }
+    std::optional<double> paper(double value) const { return in_paper() ? std::optional<double>(value) : std::nullopt; }
 };
 
 Pass pass_of(Laboratory& lab, const Scenes& scenes, AntialiasMethod method) {
     const LabelledScene scene = one_of(scenes);
     const std::uint32_t size = lab.size(256);
-    const bool first = method == AntialiasMethod::kNone, calibrated = first && scenes.empty() && size == 256;
+    const bool first = method == AntialiasMethod::kNone, calibrated = first && as_in_paper(scene.label, size);
     const Costs& costs = lab.costs(scene, size, method);
     return {scene.label,
             first ? "first pass" : "supersampling alone",
@@ -111,7 +112,7 @@ StudyPage imbalance_page(const std::string& name, const Pass& pass) {
 
     StudyPage page = page_about(name, {{"scene", pass.scene}, {"size", pass.size}, {"pes", pass.size}});
     page.comparisons = {{"u(0)", "", pass.paper(paper::kImbalance0), at(0), pass.calibration},
-                        {"u(8)", "", std::nullopt, at(kGood), pass.first ? "the paper: \"already good\"" : ""},
+                        {"u(8)", "", std::nullopt, at(kGood), pass.in_paper() ? "the paper: \"already good\"" : ""},
                         {"u(16)", "", pass.paper(paper::kImbalance16), at(kBest)},
                         {"best p of 0..16", "", pass.paper(kBest), double(best_near.p), value(best_near)},
                         {fmt::format("best p of all {}", rows.size()), "", std::nullopt, double(best.p), value(best)}};
@@ -123,7 +124,7 @@ StudyPage imbalance_page(const std::string& name, const Pass& pass) {
     page.plots[0].series = {line(pass.scene, near, &Offset::p, &Offset::u)};
     page.plots[1].series = {line(pass.scene, rows, &Offset::p, &Offset::u)};
     for (StudyPlot& plot : page.plots)
-        if (pass.first)
+        if (pass.in_paper())
             plot.series.push_back(
                 {"paper, from its tables", {0, kBest}, {paper::kImbalance0, paper::kImbalance16}, PlotStyle::kPaper});
     page.findings = {

@@ -56,7 +56,7 @@ Rows rows_of(const CostImage& image) {
 
 bool is_square(const Row& row) { return row.grid > 0; }
 
-std::vector<StudyPlot> plots_of(const Rows& rows) {
+std::vector<StudyPlot> plots_of(const std::string& scene, const Rows& rows) {
     const double w = rows.back().pes;
     const Rows squares = where(rows, is_square);
     StudyPlot speedup{"fig9", "Speed-up against the number of PEs, cyclic fold", "PEs", "speed-up"};
@@ -64,7 +64,7 @@ std::vector<StudyPlot> plots_of(const Rows& rows) {
                       line("p = round(sqrt(P))", rows, &Row::pes, &Row::root),
                       line("p = 0, column split", rows, &Row::pes, &Row::columns),
                       line("2-D, A x A PEs", squares, &Row::pes, &Row::grid, PlotStyle::kPoints)};
-    if (at_papers_size(rows.back().pes)) {
+    if (as_in_paper(scene, rows.back().pes)) {
         speedup.series.push_back(
             {"paper, p = 0 and 16", {w, w}, {paper::kSpeedup0, paper::kSpeedup16}, PlotStyle::kPaper});
         speedup.series.push_back(
@@ -98,9 +98,9 @@ std::vector<StudyTable> tables_of(const Rows& rows) {
                      false)};
 }
 
-std::vector<Comparison> comparisons_of(const Rows& rows) {
+std::vector<Comparison> comparisons_of(const std::string& scene, const Rows& rows) {
     const Row& all = rows.back();
-    const auto paper = [&](double value) { return printed(value, all.pes); };
+    const auto paper = [&](double value) { return printed(value, scene, all.pes); };
     const std::size_t squares = where(rows, is_square).size();
     const std::size_t more = squares / 2 * 2, fewer = more / 2;  // A of four times as many PEs, and of fewer
     const double most = on(rows, more * more).grid, fewest = on(rows, fewer * fewer).grid;
@@ -119,10 +119,10 @@ double mean_efficiency(const Rows& rows, double Row::*speedup) {
     return sum / static_cast<double>(rows.size());
 }
 
-std::string finding_of_whole(const Row& all) {
+std::string finding_of_whole(const std::string& scene, const Row& all) {
     std::string text =
         fmt::format("On {} PEs p = 16 gives {:.1f} times and p = 0 {:.1f} times", all.pes, all.cyclic, all.columns);
-    if (!at_papers_size(all.pes)) return text + ".";
+    if (!as_in_paper(scene, all.pes)) return text + ".";
     const double ratio = all.cyclic / paper::kSpeedup16;
     const char* verdict = ratio > 1.02 ? "more than" : ratio < 0.98 ? "less than" : "within 2 % of";
     return text + fmt::format("; the former is {} the paper's {:.0f}.", verdict, paper::kSpeedup16);
@@ -171,11 +171,11 @@ StudyPage speedup_page(const std::string& scene, const CostImage& image) {
     const Rows rows = rows_of(image);
     StudyPage page = page_about(
         "fig9", {{"scene", scene}, {"size", image.width}, {"pes", image.width}, {"offset", kOffset % image.width}});
-    page.comparisons = comparisons_of(rows);
-    page.findings = {finding_of_whole(rows.back()), finding_of_stairs(rows), finding_of_folds(rows),
+    page.comparisons = comparisons_of(scene, rows);
+    page.findings = {finding_of_whole(scene, rows.back()), finding_of_stairs(rows), finding_of_folds(rows),
                      finding_of_offset(rows)};
     page.tables = tables_of(rows);
-    page.plots = plots_of(rows);
+    page.plots = plots_of(scene, rows);
     return page;
 }
 

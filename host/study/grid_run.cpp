@@ -25,12 +25,6 @@ RingSettings ring_settings(const Divisions& divisions, const GridSettings& setti
     return ring;
 }
 
-std::uint64_t copies_of(const Scene& scene, const RingSettings& ring, const Divisions& divisions) {
-    const JobSettings job{
-        {ring.mapping.width, ring.mapping.height}, ring.sampling, ring.bounces, cycles_of_events(), ring.format};
-    return partition(pack_job(scene, job), ring.format, divisions).copies();
-}
-
 }  // namespace
 
 GridRun run_grid(Session& session, const LabelledScene& scene, const Divisions& divisions,
@@ -39,11 +33,11 @@ GridRun run_grid(Session& session, const LabelledScene& scene, const Divisions& 
     RingRenderer renderer(session, scene.scene, ring);
     GridRun run{.label = scene.label,
                 .objects = scene.scene.object_count(),
-                .divisions = divisions,
-                .copies = copies_of(scene.scene, ring, divisions)};
+                .divisions = divisions};
     run.measured_ms = measure(settings.runs, kEnoughS, [&] {
                           const RingResult result = renderer.render();
                           run.events = result.all.events;
+                          run.copies = result.accel->copies;
                           return trace_seconds(result);
                       }).min_ms;
     return run;

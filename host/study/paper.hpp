@@ -59,11 +59,15 @@ inline constexpr UniformGrid kHavran[] = {{"balls", {46, 46, 3}, 358.66, 5.69},
 
 namespace raya {
 
-inline bool at_papers_size(std::uint32_t size) { return size == static_cast<std::uint32_t>(paper::kSize); }
+/// Whether a study is made as the paper made it: of the scene of its kind, under the name that it has within the program,
+/// and at its size. Beside any other the paper's figures would stand for nothing.
+inline bool as_in_paper(const std::string& scene, std::uint32_t size) {
+    return scene == "centre" && size == static_cast<std::uint32_t>(paper::kSize);
+}
 
-/// What the paper printed, where the study is made at the paper's size: at another it would stand beside nothing.
-inline std::optional<double> printed(std::optional<double> value, std::uint32_t size) {
-    return at_papers_size(size) ? value : std::nullopt;
+/// What the paper printed, where the study is made as the paper made it.
+inline std::optional<double> printed(std::optional<double> value, const std::string& scene, std::uint32_t size) {
+    return as_in_paper(scene, size) ? value : std::nullopt;
 }
 
 }  // namespace raya

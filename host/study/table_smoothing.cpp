@@ -56,10 +56,10 @@ std::vector<Comparison> filter_comparisons(const SmoothingRuns& study) {
             for (const bool fitted : {false, true}) {
                 const Row& row = study.rows[i];
                 all.push_back({row.name() + ": " + figure.what + (fitted ? ", fitted" : ""), "ms",
-                               printed(figure.paper[i], study.size), figure.ours(fitted ? row.fitted : row.plain),
+                               printed(figure.paper[i], study.scene.label, study.size), figure.ours(fitted ? row.fitted : row.plain),
                                i == 1 && figure.paper[i] ? "[D] predicted from Table 3, not printed" : ""});
             }
-    const std::optional<double> arithmetic = printed(paper::kFilterArithmeticMs, study.size);
+    const std::optional<double> arithmetic = printed(paper::kFilterArithmeticMs, study.scene.label, study.size);
     const Row& first = study.first();
     all.push_back({"filter's arithmetic", "ms", arithmetic, first.plain.filter_ms, "[D]; nothing fitted"});
     all.push_back({"filter's arithmetic, fitted", "ms", arithmetic, first.fitted.filter_ms, "[D]"});
@@ -95,7 +95,7 @@ StudyPlot filter_plot(const SmoothingRuns& study, bool with_tracing, double pape
             return t.ring_ms + factor * (t.smooth_ms + (with_tracing ? t.trace_ms : 0));
         }));
     }
-    if (at_papers_size(study.size)) plot.series.push_back({"paper", {0, 16}, {paper0, paper16}, PlotStyle::kPaper});
+    if (as_in_paper(study.scene.label, study.size)) plot.series.push_back({"paper", {0, 16}, {paper0, paper16}, PlotStyle::kPaper});
     return plot;
 }
 
@@ -133,7 +133,7 @@ std::string finding_of_arithmetic(const Row& row) {
 std::vector<Comparison> supersample_comparisons(const SmoothingRuns& study) {
     std::vector<Comparison> all;
     const auto add = [&](const std::string& what, double value, double ours, const std::string& remark = "") {
-        all.push_back({what, "ms", printed(value, study.size), ours, remark});
+        all.push_back({what, "ms", printed(value, study.scene.label, study.size), ours, remark});
     };
     const auto add_row = [&](const Row& row, double communication, double computation) {
         const std::string name = row.name() + ": ";
@@ -152,7 +152,8 @@ std::vector<Comparison> supersample_comparisons(const SmoothingRuns& study) {
     add(middle.name() + ": communication", paper::kExchange8Ms, middle.communication_ms(),
         "[D] predicted from Tables 3 and 4, not printed");
     all.push_back({"pixels recomputed", "%",
-                   printed(50 * (paper::kRecomputedLeast + paper::kRecomputedMost), study.size), 100 * study.recomputed,
+                   printed(50 * (paper::kRecomputedLeast + paper::kRecomputedMost), study.scene.label, study.size),
+                   100 * study.recomputed,
                    "[D] 16-18 %, if Table 4 shows the phase alone"});
     add("supersampling, mean of all PEs, fitted", paper::kMeanSupersampleMs, study.factor * spa_ms(middle.again.mean),
         "[D] if Table 4 shows the phase alone");
@@ -186,7 +187,7 @@ StudyPlot supersample_plot(const SmoothingRuns& study) {
                    line("with the first pass", study.near(), &OffsetTime::offset, [&](const OffsetTime& t) {
                        return study.factor * (t.smooth_ms + t.supersample_ms + t.trace_ms);
                    })};
-    if (at_papers_size(study.size))
+    if (as_in_paper(study.scene.label, study.size))
         plot.series.push_back({"paper", {0, 16}, {paper::kSupersample0Ms, paper::kSupersample16Ms}, PlotStyle::kPaper});
     return plot;
 }
@@ -252,7 +253,7 @@ StudyPage study_table3(Laboratory& lab, const Scenes& scenes) {
     page.comparisons = filter_comparisons(study);
     page.findings = {finding_of_filter(study.first(), study.last()), finding_of_rotations(study.rows),
                      finding_of_best(study)};
-    if (at_papers_size(study.size)) page.findings.push_back(finding_of_arithmetic(study.first()));
+    if (as_in_paper(study.scene.label, study.size)) page.findings.push_back(finding_of_arithmetic(study.first()));
     page.tables = filter_tables(study);
     page.plots = {filter_plot(study, false, paper::kFilter0Ms, paper::kFilter16Ms),
                   filter_plot(study, true, paper::kFiltered0Ms, paper::kFiltered16Ms)};
@@ -264,7 +265,7 @@ StudyPage study_table4(Laboratory& lab, const Scenes& scenes) {
     const Row &first = study.first(), &last = study.last();
     StudyPage page = page_of("table4", study, study.recomputed);
     page.comparisons = supersample_comparisons(study);
-    if (at_papers_size(study.size))
+    if (as_in_paper(study.scene.label, study.size))
         page.findings = {finding_of_reading(first, last, study.factor), finding_of_balance(first, last),
                          finding_of_exchange(first, last)};
     page.findings.push_back(finding_of_recomputed(first, last, study.recomputed));

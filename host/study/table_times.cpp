@@ -13,6 +13,7 @@ constexpr double kUndisplayedMs = paper::kTotalMs - paper::kDisplayMs;          
 constexpr double kOneUndisplayedMs = paper::kOnePeTotalMs - paper::kDisplayMs;  // [D]
 
 struct Times {
+    std::string scene{};
     std::uint32_t size = 0;
     double factor = 1;
     ModelledTime array, array_fitted, one, one_fitted;
@@ -23,7 +24,8 @@ Times times_of(Laboratory& lab, const LabelledScene& scene, std::uint32_t size) 
     const SpaRun array = run_on_spa(lab.session(), scene, size, size, 16 % size);
     const SpaRun one = run_on_spa(lab.session(), scene, size, 1, 0);
     const double factor = fitted_factor(array.cost.front());
-    return {.size = size,
+    return {.scene = scene.label,
+            .size = size,
             .factor = factor,
             .array = spa_time(array),
             .array_fitted = spa_time(array, factor),
@@ -35,7 +37,7 @@ Times times_of(Laboratory& lab, const LabelledScene& scene, std::uint32_t size) 
 }
 
 std::vector<Comparison> comparisons_of(const Times& t) {
-    const auto paper = [&](double value) { return printed(value, t.size); };
+    const auto paper = [&](double value) { return printed(value, t.scene, t.size); };
     const std::string array = fmt::format("{} PEs: ", t.size), fitted = ", fitted";
     const std::string shown = "without display [D]";
     return {
@@ -77,7 +79,7 @@ Row by_paper(const std::string& machine, double objects, double compute, double 
 
 std::vector<Row> rows_of(const Times& t, const std::string& device) {
     std::vector<Row> rows;
-    if (at_papers_size(t.size))
+    if (as_in_paper(t.scene, t.size))
         rows = {by_paper("PC, 50 ns, 64 bits", 0, paper::kPcMs, 0),
                 by_paper("workstation, 25 ns, 64 bits", 0, paper::kWorkstationMs, 0),
                 by_paper("SPA, 256 PEs", paper::kObjectsMs, paper::kComputeMs, paper::kImageMs),
@@ -116,7 +118,7 @@ std::vector<std::string> findings_of(const Times& t) {
                     "as well as what the budget does not see.",
                     1e6 * t.one.compute_ms / (cycle_ns * t.size * t.size),
                     1e6 * paper::kOnePeComputeMs / (cycle_ns * paper::kSize * paper::kSize), t.factor)};
-    if (at_papers_size(t.size))
+    if (as_in_paper(t.scene, t.size))
         findings.push_back(fmt::format(
             "With that one factor the array's computing comes to {:.0f} ms beside the printed {:.0f} ({:+.1f} %): what "
             "is left is the difference in balance.",

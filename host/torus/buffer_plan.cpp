@@ -6,6 +6,7 @@
 #include <array>
 
 #include "host/error.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/scene/word_records.hpp"
 #include "host/torus/bisection.hpp"
 #include "host/torus/topology.hpp"
@@ -23,11 +24,6 @@ std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint6
     return last_that_holds(least, std::uint64_t{most} + 1,
                            [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
 }
-
-// KB with a decimal: what is needed rounded up, what there is rounded down, so that too much always reads as too much.
-std::string kb_text(std::uint64_t tenths) { return fmt::format("{}.{} KB", tenths / 10, tenths % 10); }
-std::string needed_kb(std::uint64_t bytes) { return kb_text((10 * bytes + 1023) / 1024); }
-std::string present_kb(std::uint64_t bytes) { return kb_text(10 * bytes / 1024); }
 
 // What is asked of every node.
 struct Demand {
@@ -119,7 +115,7 @@ std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fe
         fmt::format("{}: does not fit: {} of {} nodes can hold what they have to, {} cannot; {} needs {} "
                     "beside {} of buffers, a node has {}; {}",
                     demand.scene, fit, demand.nodes(), demand.nodes() - fit, node_text(demand.memories, fullest),
-                    needed_kb(4 * words), needed_kb(demand.bytes(0)), present_kb(demand.limit),
+                    needed_text(4 * words), needed_text(demand.bytes(0)), present_text(demand.limit),
                     remedies(demand, words, fewest, trial)),
         demand.bytes(words), demand.limit, demand.nodes(), fit, fullest);
 }

@@ -13,8 +13,8 @@
 
 namespace raya {
 
-JobSettings job_settings(const TorusSettings& s) {
-    return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(), s.format};
+JobSettings job_settings(const TorusSettings& s, const LengthScale& scale) {
+    return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(), s.format, scale.exponent};
 }
 
 TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
@@ -36,7 +36,7 @@ std::uint64_t pixels_of(const TorusSettings& s) {
     return s.pixels.first < all ? (all - s.pixels.first - 1) / s.pixels.stride + 1 : 0;
 }
 
-KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job, const Scene& scene) {
+KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
     return {.lanes = s.kernels.lanes,
             .group_size = s.kernels.group_size,
             .bounces = s.bounces,
@@ -44,7 +44,8 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job, const
             .exact_divide = s.kernels.exact_arithmetic,
             .exact_fma = s.kernels.exact_arithmetic,
             .words_local = s.kernels.local_words,
-            .filter = s.kernels.filter && !scene.spheres.empty() && sphere_filter_holds(s.format, scene_extent(scene)),
+            .filter = s.kernels.filter && job.header().objects.spheres > 0 &&
+                      sphere_filter_holds(s.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones()};

@@ -4,6 +4,7 @@
 
 #include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/node_memory.hpp"
@@ -11,7 +12,7 @@
 
 namespace raya {
 
-JobSettings job_settings(const TorusSettings& settings);
+JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale);
 
 /// The settings with lanes and group size chosen. UserError, before anything is packed or taken, if packets cannot name
 /// the voxels or lights, or the kernels cannot be built with them.
@@ -20,7 +21,7 @@ TorusSettings checked(TorusSettings settings, const Scene& scene, const DeviceIn
 /// How many pixels are traced.
 std::uint64_t pixels_of(const TorusSettings& settings);
 
-KernelOptions kernel_options(const TorusSettings& settings, const PackedJob& job, const Scene& scene);
+KernelOptions kernel_options(const TorusSettings& settings, const PackedJob& job);
 
 /// Tells each node's header which pixels to look at.
 void set_windows(NodeMemories& memories, const TorusSettings& settings, const PackedJob& job,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 
 #include "host/machine/t805.hpp"
@@ -21,9 +22,19 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-PackedJob packed(const Session& session, const Scene& scene, const TorusSettings& settings) {
+PackedJob packed(const Session& session, const Scene& scene, const TorusSettings& settings, const LengthScale& scale) {
     const StepLog::Step step = session.step("pack scene");
-    return pack_job(scene, job_settings(settings));
+    return pack_job(scene, job_settings(settings, scale));
+}
+
+// Of what is to be done, by the less hopeful of two measures: packets that are finished beside those that live, which tells
+// the time while all nodes compute; and how far the packets have dwindled, which tells it in the end, when few of them
+// take as many supersteps. Of both the pixels that nodes have looked at.
+double share_done(const Census& census, std::size_t returns, std::uint64_t most_live) {
+    const auto finished = static_cast<double>(returns), live = static_cast<double>(census.live);
+    if (live == 0) return census.looked;
+    const double dwindled = 1 - std::log1p(live) / std::log1p(static_cast<double>(most_live));
+    return census.looked * std::min(finished / (finished + live), dwindled);
 }
 
 }  // namespace
@@ -41,6 +52,7 @@ struct TorusRenderer::Parts {
     Session& session;
     TorusSettings settings;
     std::string scene;
+    LengthScale scale;
     PackedJob job;
     Partition partition{};
     NodeMemories memories{};
@@ -62,14 +74,16 @@ struct TorusRenderer::Parts {
     std::uint64_t node_bytes(const NodeBuffers& any) const;
 };
 
-TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings)
-    : parts_(new Parts{.session = session,
-                       .settings = checked(settings, scene, session.device()),
-                       .scene = scene.name,
-                       .job = packed(session, scene, settings)}) {
+TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings) {
+    const LengthScale scale = length_scale(scene, settings.format);
+    parts_.reset(new Parts{.session = session,
+                           .settings = checked(settings, scene, session.device()),
+                           .scene = scene.name,
+                           .scale = scale,
+                           .job = packed(session, scene, settings, scale)});
     Parts& p = *parts_;
     p.divide(static_cast<std::uint32_t>(scene.lights.size()));
-    p.options = kernel_options(p.settings, p.job, scene);
+    p.options = kernel_options(p.settings, p.job);
     p.build();
 }
 
@@ -85,6 +99,8 @@ void TorusRenderer::Parts::divide(std::uint32_t lights) {
 }
 
 TorusRenderer::~TorusRenderer() = default;
+
+const LengthScale& TorusRenderer::scale() const { return parts_->scale; }
 
 void TorusRenderer::set_pixels(const PixelSubset& pixels) {
     parts_->settings.pixels = pixels;
@@ -163,6 +179,7 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
     Room room = Room::kWholeTree;
     bool crowded = false;
     int stands = 0;  // supersteps without progress
+    std::uint64_t most_live = 0;
     for (std::uint32_t superstep = 0;; ++superstep) {
         if (!crowded) nodes->inject();
         nodes->trace_voxel(room);
@@ -179,8 +196,10 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
         if (step_sink)
             step_sink({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
         for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
-        if (progress) progress(census.looked);
-        if (census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made) return {};
+        most_live = std::max(most_live, census.live);
+        const bool ended = census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made;
+        if (progress) progress(ended ? 1 : share_done(census, returns.size(), most_live));
+        if (ended) return {};
         crowded = census.fullest > buffers.queue / 4;
         // What a superstep with little room has accepted is seen in the next one.
         stands = census.progress == 0 && most_words == 0 ? stands + 1 : 0;
@@ -239,6 +258,7 @@ std::uint64_t TorusRenderer::Parts::node_bytes(const NodeBuffers& any) const {
 
 void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.copies = memories.copies;
+    result.scale = scale;
     result.buffers = buffers;
     result.copied_words = nodes->words_local() ? memories.words.size() : 0;
     result.node_bytes = node_bytes(buffers);

@@ -5,6 +5,7 @@
 
 #include "host/cl/commands.hpp"
 #include "host/files/progress.hpp"
+#include "host/scene/length_scale.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/packet_record.hpp"
 #include "host/torus/queue_search.hpp"
@@ -26,6 +27,9 @@ class TorusRenderer {
     /// `step_sink` of every superstep. Throws Standstill.
     TorusResult render(const ProgressCallback& progress = {}, const PacketSink& sink = {},
                        const SuperstepSink& step_sink = {}, std::uint32_t packets_every = 1);
+
+    /// By what the scene's lengths are multiplied.
+    const LengthScale& scale() const;
 
     /// Other pixels for the images that follow: groups of a machine render in turn without building anew.
     void set_pixels(const PixelSubset& pixels);

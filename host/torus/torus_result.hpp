@@ -9,6 +9,7 @@
 #include "host/image/image.hpp"
 #include "host/machine/load.hpp"
 #include "host/machine/machine.hpp"
+#include "host/scene/length_scale.hpp"
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/superstep.hpp"
 #include "kernels/shared/packet.h"
@@ -29,6 +30,7 @@ struct TorusResult {
     std::vector<std::uint64_t> link_packets;  // [node][RAYA_LINKS]
     std::uint64_t queue_max = 0;              // most packets that any node's queue held
     std::uint64_t copies = 0;                 // of objects in several voxels
+    LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // of the fullest node: words and buffers
     std::uint64_t copied_words = 0;   // of the scene, by all nodes into local memory, whenever a kernel starts

@@ -24,7 +24,7 @@ std::runtime_error system_error(const char* what) {
 
 // Between fork and exec: calls nothing that takes locks.
 [[noreturn]] void become(char* const* arguments, int pipe, pid_t parent) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);  // kept by exec
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // kept by exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == parent) {
         ::fcntl(pipe, F_SETFD, 0);  // kept open by exec

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 
+#include "host/cl/driver_call.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 
@@ -86,6 +87,7 @@ NamedDevices named_devices(const std::string& wanted) {
 }
 
 void run_worker(int lines, const std::string& wanted, std::size_t index, const VerifySettings& settings) {
+    leave_driver_crashes();  // the supervisor tells of them
     ::fcntl(lines, F_SETFD, FD_CLOEXEC);  // not for compilers that the driver starts
     const auto stop = [&](const std::exception& error, const char* kind) {
         send(lines, {{"error", error.what()}, {"kind", kind}});

@@ -48,6 +48,7 @@ inline std::set<std::string> fixed_keys() {
                                   "machine.fold string",
                                   "machine.format string",
                                   "machine.bounces count",
+                                  "machine.length_exponent count",
                                   "machine.pe_memory_bytes count",
                                   "machine.pe_memory_used_bytes count",
                                   "device.name string",

@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <array>
 
+#include "host/files/whole_file.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
+#include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
+#include "tests/scene/scaled_scene.hpp"
 
 namespace raya {
 namespace {
@@ -51,6 +56,110 @@ TEST_CASE("no file says when or where it was made", "[cli]") {
         const std::string name = host.data();
         if (name.size() >= 6) CHECK_FALSE(contains(bytes, name));  // a shorter one could stand among the pixels
     }
+}
+
+TEST_CASE("a scene too large for the default machine's format is rendered in other units, which are reported", "[cli]") {
+    const ScratchFolder folder;
+    Scene scene = read_nff(scene_file("mirrors"));
+    scene.planes.clear();
+    const std::string usual = folder / "usual.nff", large = folder / "large.nff", tiny = folder / "tiny.nff";
+    write_whole_file(usual, write_nff(scene));
+    write_whole_file(large, write_nff(scaled_scene(scene, 0x1p14)));
+    write_whole_file(tiny, write_nff(scaled_scene(scene, 0x1p-20)));
+    for (const char* machine : {"spa", "grande", "torus"}) {
+        CAPTURE(machine);
+        const Words options = {"--machine", machine, "--size", "24"};
+        const auto report_of = [&](const std::string& file) {
+            Words words = {"render", file, "-o", folder / "x.pfm", "--lanes", "4", "--report", folder / "x.json"};
+            words.insert(words.end(), options.begin(), options.end());
+            if (machine == std::string("spa")) words.insert(words.end(), {"--pes", "24"});
+            const Outcome run = run_raya(words);
+            INFO(run.told());
+            REQUIRE(run.code == 0);
+            const Document report = Document::parse(file_contents(folder / "x.json"));
+            CHECK((run.out.find("scale   lengths x 2^") != std::string::npos) ==
+                  (report["machine"]["length_exponent"] != 0));
+            return report;
+        };
+        const Document as_is = report_of(usual), beyond = report_of(large), below = report_of(tiny);
+        CHECK(as_is["machine"]["length_exponent"] == 0);
+        CHECK((beyond["machine"]["length_exponent"] < 0) == (machine == std::string("spa")));  // the others: fp32
+        CHECK((below["machine"]["length_exponent"] > 0) == (machine == std::string("spa")));
+        CHECK(beyond["image"]["hash"] == as_is["image"]["hash"]);
+        CHECK(below["image"]["hash"] == as_is["image"]["hash"]);
+        CHECK(as_is["rays"]["primary_hits"] > 0);
+    }
+}
+
+TEST_CASE("what a format cannot hold is warned of, and refused where nothing is left", "[cli]") {
+    const ScratchFolder folder;
+    const std::string scene = folder / "far.nff";
+    const auto render = [&](const std::string& spheres, const std::string& format) {
+        write_whole_file(scene, "v\nfrom 0 -1e6 0\nat 0 0 0\nup 0 0 1\nangle 1\nhither 1\nresolution 8 8\n" + spheres);
+        return run_raya({"render", scene, "-o", folder / "x.pfm", "--lanes", "4", "--pes", "8", "--format", format, "--report",
+                         folder / "x.json"});
+    };
+    const Outcome warned = render("s 0 0 0 1000\ns 9 9 9 1e-5\n", "spa22");
+    INFO(warned.told());
+    CHECK(warned.code == 0);
+    CHECK_THAT(warned.err, Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are not seen") &&
+                               Catch::Contains("e6m15 holds beside a length of 1e+06"));
+    const Document report = Document::parse(file_contents(folder / "x.json"));
+    REQUIRE(report["warnings"].size() == 1);
+    CHECK_THAT(warned.err, Catch::Contains(report["warnings"][0].get<std::string>()));
+    const Outcome refused = render("s 9 9 9 1e-5\n", "spa22");
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Catch::Contains("from 1e-05 to 1e+06") && Catch::Contains("remedy: --format fp32"));
+    CHECK(render("s 9 9 9 1e-5\n", "fp32").code == 0);
+}
+
+TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --strict refused", "[cli]") {
+    const ScratchFolder folder;
+    const std::string scene = folder / "t.nff";
+    write_whole_file(scene, "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\nla 1 1 1\nla 0 0 0\n"
+                            "p 3\n0 0 0\n0 0 0\n1 1 1\ns 0 0 0 1\n");
+    const Words words = {"render", scene, "-o", folder / "x.pfm", "--lanes", "4", "--pes", "8", "--report", folder / "x.json"};
+    const Outcome run = run_raya(words);
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK(run.err == "raya: warning: " + scene + ":8: entity 'la' of another dialect, skipped (2 in all)\n" +
+                         "raya: warning: " + scene + ":10: polygon without area, left out\n");
+    const Document report = Document::parse(file_contents(folder / "x.json"));
+    REQUIRE(report["skipped"].size() == 2);
+    CHECK(report["skipped"][0] == Document{{"what", "entity 'la' of another dialect, skipped"}, {"count", 2}, {"line", 8}});
+    CHECK(report["warnings"].size() == 2);
+    Words strict = words;
+    strict.push_back("--strict");
+    CHECK(run_raya(strict).code == 2);
+    for (const Words& other : {Words{"bench", scene, "--strict"}, Words{"study", "fig7", scene, "--strict", "-o", folder / "s"},
+                               Words{"study", "formats", scene, "--strict", "-o", folder / "s"}}) {
+        const Outcome refused = run_raya(other);
+        INFO(refused.told());
+        CHECK(refused.code == 2);
+        CHECK_THAT(refused.err, Catch::Contains("t.nff:8: unknown entity 'la'"));
+    }
+    CHECK(folder.entries() == 3);
+}
+
+TEST_CASE("two names of one file are refused, however they are written", "[cli]") {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "d");
+    std::filesystem::create_symlink("x.pfm", folder / "link.pfm");
+    for (const auto& [one, other] : {std::pair<std::string, std::string>{"x.pfm", "./x.pfm"},
+                                     {"x.pfm", "d/../x.pfm"},
+                                     {"link.pfm", "x.pfm"}}) {
+        CAPTURE(one, other);
+        const Outcome run = run_raya({"render", scene_file("planes"), "-o", folder / one, "--report", (folder.path() / other).string()});
+        CHECK(run.code == 2);
+        CHECK_THAT(run.err, Catch::Contains("named twice"));
+    }
+    const std::string scene = folder / "scene.nff";
+    std::filesystem::copy(scene_file("planes"), scene);
+    const Outcome run = run_raya({"render", scene, "-o", folder / "x.pfm", "--report", folder / "d/../scene.nff"});
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Catch::Contains("named twice"));
+    CHECK(file_contents(scene) == file_contents(scene_file("planes")));
+    CHECK(folder.entries() == 3);
 }
 
 TEST_CASE("a render replaces old files", "[cli]") {

@@ -12,6 +12,7 @@
 
 using namespace raya;
 using Catch::Contains;
+using Catch::Equals;
 
 namespace {
 
@@ -23,7 +24,7 @@ std::string complaint(Value& value, const std::string& text) {
     std::vector<std::string> arguments = {text, "--it"};       // CLI11 takes them from the end
     try {
         app.parse(arguments);
-    } catch (const CLI::ParseError& error) {
+    } catch (const UserError& error) {
         return error.what();
     }
     return "";
@@ -63,15 +64,23 @@ TEST_CASE("the type of an option's value decides what it takes, not what its hel
     CHECK(complaint(whole, "7").empty());
     CHECK(whole == 7u);
     for (const std::string text : {"-1", "+1", "1.5", "x", "1 "})
-        CHECK_THAT(complaint(whole, text), Contains("'" + text + "' is not a whole number"));
+        CHECK_THAT(complaint(whole, text), Equals("--it " + text + (text == "-1" ? ": out of range" : ": not a whole number") + "; --it: A value"));
+    CHECK_THAT(complaint(whole, "4294967296"), Contains("--it 4294967296: out of range"));
     std::uint64_t plain = 0;
-    CHECK_THAT(complaint(plain, "-1"), Contains("is not a whole number"));
+    CHECK_THAT(complaint(plain, "-1"), Contains("out of range"));
+    CHECK_THAT(complaint(plain, "18446744073709551616"), Contains("out of range"));
+    CHECK(complaint(plain, "18446744073709551615").empty());
+    CHECK(plain == UINT64_MAX);
+    std::vector<std::uint32_t> several;
+    CHECK_THAT(complaint(several, "x"), Contains("not a whole number"));
     int number = 0;  // a range of its own is for its command to check
     CHECK(complaint(number, "-1").empty());
     CHECK(number == -1);
     std::optional<double> real;
     CHECK(complaint(real, "-1.5").empty());
     CHECK(real == -1.5);
+    CHECK_THAT(complaint(real, "1.5x"), Contains("--it 1.5x: not a number"));
+    CHECK_THAT(complaint(real, "1e999"), Contains("--it 1e999: out of range"));
     std::string word;
     CHECK(complaint(word, "x").empty());
     CHECK(word == "x");

@@ -75,24 +75,30 @@ TEST_CASE("a size that is no size is refused", "[cli]") {
 
 TEST_CASE("a number that is no whole number is refused", "[cli]") {
     for (const std::string option : {"--pes", "--offset", "--bounces", "--lanes", "--group"})
-        check_render_options({{{option, "x"}, {option, "--help"}}});
-    for (const std::string value : {"-1", "1.5", "4294967296"})
-        check_render_options({{{"--pes", value}, {"--pes", value, "--help"}}});
+        check_render_options({{{option, "x"}, {option + " x: not a whole number; " + option + ": "}}});
+    for (const std::string value : {"-1", "4294967296"})
+        check_render_options({{{"--pes", value}, {"--pes " + value + ": out of range", "1..W*H"}}});
+    check_render_options({{{"--pes", "1.5"}, {"--pes 1.5: not a whole number", "1..W*H"}}});
 }
 
 TEST_CASE("words that do not belong there are refused with a hint at the help", "[cli]") {
-    check_render_options({{{"--nonsense"}, {"--nonsense", "--help"}},
-                          {{"second.nff"}, {"second.nff", "--help"}},
-                          {{"--size"}, {"--size", "missing", "--help"}},
-                          {{"--pes", "4", "--pes", "5"}, {"--pes", "--help"}}});
+    check_render_options({{{"--nonsense"}, {"raya: render: no option --nonsense; see raya render --help"}},
+                          {{"--siz", "32"}, {"no option --siz (did you mean --size?)"}},
+                          {{"second.nff"}, {"second.nff is one word too many; see raya render --help"}},
+                          {{"--size"}, {"--size: value N|WxH missing", "--help"}},
+                          {{"--pes", "4", "--pes", "5"}, {"--pes: takes one value, not 2", "--help"}}});
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    check_refused(outputs, {}, 2, {"subcommand is required", "Run with --help for more information"});
-    check_refused(outputs, {"frobnicate"}, 2, {"subcommand is required", "--help"});
+    check_refused(outputs, {}, 2, {"raya: name a command: render, devices", "see raya --help"});
+    check_refused(outputs, {"frobnicate"}, 2, {"raya: no command frobnicate; there are render, devices"});
+    check_refused(outputs, {"rendr"}, 2, {"raya: no command rendr (did you mean render?); there are"});
+    check_refused(outputs, {"verify", "--ful"}, 2, {"no option --ful (did you mean --full?); see raya verify --help"});
+    check_refused(outputs, {"study", "-o", "x", "fig7"}, 2, {"-o stands before fig7", "let it follow"});
+    check_refused(outputs, {"study", "fig7", "fig8", "-o", outputs / "z"}, 2, {"fig8 is a study", "raya study all"});
     check_refused(outputs, {"render"}, 2, {"SCENE is required", "--help"});
     check_refused(outputs, {"render", scene}, 2, {"--output is required", "--help"});
     check_refused(outputs, {"devices", "extra"}, 2, {"extra", "--help"});
-    check_refused(outputs, {"generate"}, 2, {"subcommand is required", "--help"});
+    check_refused(outputs, {"generate"}, 2, {"raya: generate: name a command: balls, lattice", "--help"});
 }
 
 TEST_CASE("bench and generate refuse numbers outside their ranges", "[cli]") {
@@ -164,7 +170,7 @@ TEST_CASE("empty values, negative counts and one file named twice are refused", 
     for (const char* option : {"--lanes", "--size", "--device", "--format", "--report"})
         check_refused(outputs, {"render", scene, "-o", image, option, ""}, 2, {option, "must not be empty"});
     check_refused(outputs, {"generate", "random", "5", "--seed", "-1", "-o", image}, 2,
-                  {"--seed", "'-1' is not a whole number"});
+                  {"--seed -1: out of range", "0..2^64-1"});
     check_refused(outputs, {"render", scene, "-o", image, "--cost", image}, 2, {"named twice"});
     check_refused(outputs, {"render", scene, "-o", image, "--report", scene}, 2, {"planes.nff", "named twice"});
 }

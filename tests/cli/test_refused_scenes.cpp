@@ -34,7 +34,7 @@ TEST_CASE("a scene that is no good is refused with file, line and reason", "[cli
     const std::string scene = scenes / "t.nff";
     for (const Row& row : rows) {
         std::ofstream(scene) << row.text;
-        check_refused(outputs, render_into(outputs, scene), 2, {"raya: " + scene + ":" + row.message});
+        check_refused(outputs, render_into(outputs, scene, {"--strict"}), 2, {"raya: " + scene + ":" + row.message});
     }
 }
 
@@ -43,7 +43,7 @@ TEST_CASE("a scene that cannot be read is refused", "[cli]") {
     const std::string missing = scenes / "missing.nff";
     check_refused(outputs, render_into(outputs, missing), 2, {missing, "cannot read the scene: No such file"});
     check_refused(outputs, render_into(outputs, scenes.path()), 2,
-                  {scenes.path(), "it is a folder; name an NFF file in it"});
+                  {scenes.path(), "it is a folder, not a file"});
     check_refused(outputs, {"bench", missing}, 2, {missing, "cannot read the scene"});
 }
 

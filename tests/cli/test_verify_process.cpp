@@ -92,6 +92,35 @@ std::string told_on_terminal(const Words& arguments, Surroundings around) {
     return text;
 }
 
+long count_of(const std::string& text, const std::string& what) {
+    long count = 0;
+    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += what.size()) ++count;
+    return count;
+}
+
+TEST_CASE("every command that takes long says so on a terminal within two seconds, and draws a few times a second",
+          "[cli]") {
+    const ScratchFolder folder;
+    const Surroundings slow = failing_device("clCreateContext 1 slow");
+    const Words render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4"};
+    const auto with = [&](Words words, const Words& more) {
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    for (const auto& [words, told] :
+         {std::pair<Words, std::string>{with(render, {"--pes", "4"}), "preparing ... 1 s"},
+          {with(render, {"--machine", "torus"}), "preparing ... 1 s"},
+          {{"bench", "--size", "8", "--pes", "8", "--lanes", "4", "--format", "fp32", "--samples", "1"}, "preparing ... 1 s"},
+          {{"study", "fig7", "--size", "17", "-o", folder / "s"}, "preparing ... 1 s"}}) {
+        const auto start = std::chrono::steady_clock::now();
+        const std::string text = told_on_terminal(words, slow);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        CAPTURE(words[0], text);
+        CHECK_THAT(text, Catch::Contains(told) && Catch::EndsWith("\r\033[K"));
+        CHECK(static_cast<double>(count_of(text, "\r\033[K")) <= 10 * seconds + 1);
+    }
+}
+
 TEST_CASE("a check that takes long is named on a terminal, and nowhere else", "[cli][verify]") {
     const Words one_check = {"verify", "--only", "machine bus"};
     const Surroundings slow = failing_device("clFinish 1 slow");

@@ -103,6 +103,37 @@ TEST_CASE("write_whole_file follows symbolic links", "[whole_file]") {
     CHECK(contents(folder / "elsewhere/real") == "new");
 }
 
+TEST_CASE("write_whole_file writes through a link to a file that is not there yet", "[whole_file]") {
+    const ScratchFolder folder;
+    fs::create_directory(folder / "there");
+    fs::create_symlink("there/new", folder / "link");
+    fs::create_symlink(folder / "link", folder / "link to link");
+    write_whole_file(folder / "link to link", "x");
+    CHECK(contents(folder / "there/new") == "x");
+    CHECK(fs::is_symlink(folder / "link"));
+    CHECK(fs::is_symlink(folder / "link to link"));
+    fs::create_symlink("nowhere/new", folder / "lost");
+    CHECK_THROWS_WITH(write_whole_file(folder / "lost", "x"), Contains("nowhere' does not exist"));
+}
+
+TEST_CASE("written_file is one name for one file, there or not", "[whole_file]") {
+    const ScratchFolder folder;
+    fs::create_directory(folder / "there");
+    fs::create_directory_symlink("there", folder / "way");
+    fs::create_symlink("there/new", folder / "link");
+    const fs::path file = written_file(folder / "there/new");
+    for (const char* other : {"there/./new", "way/new", "link", "there/../there/new", "way/../link", "there//new"}) {
+        CAPTURE(other);
+        CHECK(written_file(folder / other) == file);
+    }
+    CHECK(written_file(folder / "there/old") != file);
+    const fs::path before = fs::current_path();
+    fs::current_path(folder / "there");
+    CHECK(written_file("new") == file);
+    CHECK(written_file("./new") == file);
+    fs::current_path(before);
+}
+
 TEST_CASE("write_whole_file writes a device or a pipe directly", "[whole_file]") {
     write_whole_file("/dev/null", "nothing");
     CHECK(fs::is_character_file("/dev/null"));
@@ -139,6 +170,18 @@ TEST_CASE("a target that cannot be written is refused with file, reason and reme
     refused("", "the name is empty", "name a file");
     CHECK_THROWS_WITH(write_whole_file(folder / std::string(300, 'n'), "x"), Contains("File name too long"));
     CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("names that no file can have are refused with the reason", "[whole_file]") {
+    const ScratchFolder folder;
+    fs::create_symlink("loop", folder / "loop");
+    for (const auto& [name, reason] : {std::pair<std::string, std::string>{std::string(300, 'n'), "File name too long"},
+                                       {"loop", "Too many levels of symbolic links"},
+                                       {"loop/x", "Too many levels of symbolic links"}}) {
+        CAPTURE(name);
+        CHECK_THROWS_AS(write_whole_file(folder / name, "x"), UserError);
+        CHECK_THROWS_WITH(check_writable(folder / name), Contains(name) && Contains(reason));
+    }
 }
 
 TEST_CASE("missing permissions are refused and nothing is touched", "[whole_file]") {

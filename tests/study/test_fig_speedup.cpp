@@ -63,15 +63,24 @@ CostImage one_dear(std::uint64_t cost) {
 }
 
 TEST_CASE("fig9 says how ours lies to the paper's 229 times", "[study]") {
-    const StudyPage even = speedup_page("even", even_costs(256));
+    const StudyPage even = speedup_page("centre", even_costs(256));
     CHECK(says(even, "more than the paper's 229"));
-    CHECK(says(speedup_page("near", one_dear(31)), "within 2 % of the paper's 229"));
-    CHECK(says(speedup_page("dear", one_dear(100)), "less than the paper's 229"));
+    CHECK(says(speedup_page("centre", one_dear(31)), "within 2 % of the paper's 229"));
+    CHECK(says(speedup_page("centre", one_dear(100)), "less than the paper's 229"));
     REQUIRE(even.comparisons.size() == 4);
     CHECK(even.comparisons[0].paper == 229.0);
     CHECK(even.comparisons[2].what == "CAP's mapping, 16 x 16 PEs over 8 x 8");
     CHECK(even.comparisons[2].ours == 4);
     CHECK(even.comparisons[3].ours == 64);
+}
+
+TEST_CASE("beside a scene of one's own, or another size, stand no figures of the paper", "[study]") {
+    for (const StudyPage& page : {speedup_page("folder/centre.nff", even_costs(256)), speedup_page("centre", even_costs(64))}) {
+        for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);
+        for (const StudyPlot& plot : page.plots)
+            for (const PlotSeries& series : plot.series) CHECK(series.style != PlotStyle::kPaper);
+        CHECK_FALSE(says(page, "the paper's 229"));
+    }
 }
 
 TEST_CASE("fig9 sees the stairs of whole columns", "[study]") {

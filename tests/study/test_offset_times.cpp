@@ -114,10 +114,11 @@ TEST_CASE("the factor makes one PE's time that of Table 2, at any size", "[study
     CHECK(fitted_factor({2, 2, {9'000, 10'000, 20'000, 551}}) == Approx(64'800e4 / 65'536 * 4 / 39'551).epsilon(1e-12));
 }
 
-TEST_CASE("the paper's figures stand at its size alone", "[study]") {
-    CHECK(printed(5, 256) == 5);
-    CHECK_FALSE(printed(5, 255));
-    CHECK_FALSE(printed(5, 512));
+TEST_CASE("the paper's figures stand beside its scene at its size alone", "[study]") {
+    CHECK(printed(5, "centre", 256) == 5);
+    CHECK_FALSE(printed(5, "centre", 255));
+    CHECK_FALSE(printed(5, "centre", 512));
+    CHECK_FALSE(printed(5, "scenes/centre.nff", 256));
 }
 
 TEST_CASE("of equal offsets the smallest is best", "[study]") {

@@ -62,7 +62,7 @@ def junit_of(words):
 def wrong_with_raya(words, raya, scratch):
     """The command with one option more, which is the only thing that raya may mind: so all is parsed and nothing runs."""
     code, said = output_of([raya, *words[1:], NO_SUCH], cwd=scratch)
-    return "" if code == 2 and f"The following argument was not expected: {NO_SUCH}\n" in said else said.strip()
+    return "" if code == 2 and f": no option {NO_SUCH}; see raya {words[1]} --help\n" in said else said.strip()
 
 
 def wrong_with_tool(words):

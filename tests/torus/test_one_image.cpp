@@ -8,6 +8,7 @@
 #include "host/torus/standstill.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"
+#include "tests/scene/scaled_scene.hpp"
 #include "tests/torus/render_torus.hpp"
 
 namespace raya {
@@ -202,6 +203,19 @@ TEST_CASE("many nodes have few pixels, and the same image", "[torus]") {
             CAPTURE(case_text(c));
             CHECK(one_image(render_torus(session, scene, c)) == expected);
         }
+}
+
+TEST_CASE("a scene beyond the format's range is the same image on the torus as in its own units", "[torus]") {
+    Session session(choose_device(""));
+    for (const std::string format : {"spa22", "e6m10"}) {
+        Scene scene = random_view_scene(kRichScenes[0]);
+        scene.planes.clear();
+        const TorusCase c{.width = 18, .height = 12, .nodes = {3, 2, 2}, .lanes = 4, .group = 1, .format = format};
+        const Scene large = scaled_scene(scene, 0x1p16);
+        CAPTURE(format);
+        CHECK(one_image(render_torus(session, large, c)) == ring_image(scene, c));
+        CHECK(render_torus(session, large, c).scale.exponent < -8);
+    }
 }
 
 TEST_CASE("a second render of the same machine is the same in all", "[torus]") {

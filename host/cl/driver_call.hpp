@@ -1,0 +1,27 @@
+// Drivers that end the program: what they were asked for, said in time.
+#pragma once
+
+namespace raya {
+
+/// While it lives, `what` (which outlives it) is what the driver is doing. OpenCL's own threads work meanwhile, so a
+/// crash in any thread is the driver's, or a kernel's.
+class DriverCall {
+  public:
+    explicit DriverCall(const char* what);
+    ~DriverCall();
+    DriverCall(const DriverCall&) = delete;
+    DriverCall& operator=(const DriverCall&) = delete;
+
+  private:
+    const char* before_;
+};
+
+/// From now on a driver that aborts or crashes is named on stderr with what it was doing and with remedies, files in
+/// progress are removed, and the exit code is that of a DeviceError. Crashes elsewhere end the program as ever; so do all
+/// where something else, such as a sanitizer, handles them.
+void explain_driver_crashes();
+
+/// Crashes end the program by their signal again: for a process whose parent wants to see it.
+void leave_driver_crashes();
+
+}  // namespace raya

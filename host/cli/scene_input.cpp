@@ -1,0 +1,53 @@
+#include "host/cli/scene_input.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+
+#include "host/error.hpp"
+#include "host/files/say.hpp"
+
+namespace raya {
+
+void Warnings::add(const std::string& text) {
+    say(fmt::format("raya: warning: {}\n", text));
+    texts_.push_back(text);
+}
+
+void add_strict_option(CLI::App& command, bool& strict) {
+    command.add_flag("--strict", strict,
+                     "Refuse a scene with facets that have no area or are not flat, or with entities that are not NFF's, "
+                     "in place of leaving them out, cutting them into triangles or skipping them with a warning");
+}
+
+SceneInput read_scene(const std::string& file, bool strict) {
+    SceneInput input;
+    const auto warn = [&] {
+        for (const NffRemark& remark : input.remarks) input.warnings.add(remark_text(file, remark));
+    };
+    try {
+        input.scene = read_nff(file, strict ? nullptr : &input.remarks);
+    } catch (const UserError&) {
+        warn();  // what was passed over may be why the rest is no scene
+        throw;
+    }
+    warn();
+    return input;
+}
+
+void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings) {
+    constexpr std::size_t kMany = 100'000;
+    if (accelerated || scene.object_count() < kMany) return;
+    warnings.add(fmt::format("{}: every ray is tested against {} objects; --accel grid finds the same hits sooner",
+                             scene.name, scene.object_count()));
+}
+
+void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format, Warnings& warnings) {
+    if (scale.vanishing == 0) return;
+    warnings.add(fmt::format(
+        "{}: {} spheres, cones or checkers are not seen: they are smaller than {:.3g}, the least that {} holds beside a "
+        "length of {:.3g}; remedy: --format fp32",
+        scene.name, scale.vanishing, scale.least, format_name(format), scale.largest));
+}
+
+}  // namespace raya

@@ -1,0 +1,50 @@
+#include "host/files/read_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+namespace raya {
+namespace {
+
+[[noreturn]] void refuse(int error) { throw UnreadableFile(std::generic_category().message(error)); }
+
+struct Descriptor {
+    int number;
+    ~Descriptor() { ::close(number); }
+};
+
+void check_kind(const struct stat& status, Pipes pipes) {
+    if (S_ISDIR(status.st_mode)) throw UnreadableFile("it is a folder, not a file");
+    if (S_ISFIFO(status.st_mode) && pipes == Pipes::kRefused) throw UnreadableFile("it is a pipe");
+    if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) throw UnreadableFile("it is not a file");
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& path, Pipes pipes, std::uint64_t most) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) refuse(errno);
+    check_kind(status, pipes);  // before it is opened, which waits for a pipe's other end
+    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (file.number < 0) refuse(errno);
+    constexpr std::size_t kBlock = 1 << 16;
+    std::string bytes(static_cast<std::size_t>(status.st_size), '\0');  // as large as it says, which may be wrong
+    for (std::size_t end = 0;;) {
+        if (end > most) throw UnreadableFile(fmt::format("it has more than {} bytes", most));
+        if (end == bytes.size()) bytes.resize(end + std::max(end, kBlock));
+        const ssize_t got = ::read(file.number, bytes.data() + end, bytes.size() - end);
+        if (got < 0 && errno != EINTR) refuse(errno);
+        end += static_cast<std::size_t>(std::max<ssize_t>(got, 0));
+        if (got != 0) continue;
+        bytes.resize(end);
+        return bytes;
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,59 @@
+#include "host/scene/nff_dialects.hpp"
+
+#include <algorithm>
+
+#include "host/scene/nff_tokens.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\v\f", kLineEnds = "\r\n";
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+bool reads_as_keyword(std::string_view word) {
+    constexpr std::size_t kLongest = 8;
+    return !word.empty() && word.size() <= kLongest && is_letter(word[0]) &&
+           std::all_of(word.begin(), word.end(),
+                       [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+/// A dot or a slash before its last character: `wood.ppm`, but not the last word of a sentence.
+bool reads_as_file(std::string_view word) { return word.substr(0, word.size() - 1).find_first_of("./") != word.npos; }
+
+bool opens_mail(std::string_view line) {
+    const auto colon = std::find_if_not(line.begin(), line.end(), [](char c) { return is_letter(c) || c == '-'; });
+    return line.starts_with("From ") || (colon - line.begin() > 1 && colon != line.end() && *colon == ':');
+}
+
+}  // namespace
+
+bool reads_as_entity(std::string_view keyword, std::string_view rest) {
+    constexpr int kMostWords = 2;
+    int numbers = 0, words = 0;
+    rest = rest.substr(0, rest.find('#'));
+    for (std::size_t at = 0; (at = rest.find_first_not_of(kBlanks, at)) != rest.npos;) {
+        const std::string_view word = rest.substr(at, rest.find_first_of(kBlanks, at) - at);
+        if (reads_as_number(word))
+            ++numbers;
+        else if (!reads_as_file(word))
+            ++words;
+        at += word.size();
+    }
+    return reads_as_keyword(keyword) && words <= (numbers > 0 ? kMostWords : 0);
+}
+
+Header mail_header(std::string_view text) {
+    const auto line_at = [&](std::size_t at) { return text.substr(at, text.find_first_of(kLineEnds, at) - at); };
+    std::size_t at = std::min(text.find_first_not_of("\r\n \t\v\f"), text.size());
+    if (!opens_mail(line_at(at))) return {};
+    for (std::string_view line = line_at(at); line.find_first_not_of(kBlanks) != line.npos; line = line_at(at)) {
+        at += line.size();
+        at += text.substr(at).starts_with("\r\n") ? 2 : at < text.size() ? 1 : 0;
+    }
+    const std::string_view header = text.substr(0, at);
+    const auto ends = [&](char c) { return std::count(header.begin(), header.end(), c); };
+    return {at, static_cast<int>(std::max(ends('\n'), ends('\r')))};
+}
+
+}  // namespace raya

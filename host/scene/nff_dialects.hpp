@@ -1,0 +1,22 @@
+// What files by other people have that is not NFF, and can be told from a file of another kind.
+#pragma once
+#include <cstddef>
+#include <string_view>
+
+namespace raya {
+
+/// Whether a line reads as an entity that somebody has added to NFF (`la 0.2 0.2 0.2`, `tt wood.ppm 0 0 1`, `Q`), not as
+/// prose: a short keyword of letters and digits; behind it numbers, names of files, and beside numbers at most two other
+/// words. `rest`: the line behind the keyword.
+bool reads_as_entity(std::string_view keyword, std::string_view rest);
+
+struct Header {
+    std::size_t bytes = 0;  // 0: there is none
+    int lines = 0;
+};
+
+/// A mail's header with which a text opens, behind empty lines: from `From somebody` or `Name: text` to the next empty
+/// line.
+Header mail_header(std::string_view text);
+
+}  // namespace raya

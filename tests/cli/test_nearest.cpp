@@ -1,0 +1,22 @@
+// The name that a user may have meant.
+#include "host/cli/nearest.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace raya {
+namespace {
+
+TEST_CASE("the nearest name is the one with the fewest letters to change, or that begins so", "[parse]") {
+    const std::vector<std::string> names = {"render", "devices", "generate", "bench", "study", "verify"};
+    CHECK(nearest_name("rendr", names) == "render");
+    CHECK(nearest_name("redner", names) == "render");  // two letters swapped
+    CHECK(nearest_name("gen", names) == "generate");
+    CHECK(nearest_name("device", names) == "devices");
+    CHECK(nearest_name("study", names) == "study");
+    for (const char* unlike : {"", "x", "go", "paint", "frobnicate"}) CHECK(nearest_name(unlike, names).empty());
+    CHECK(did_you_mean("verfiy", names) == " (did you mean verify?)");
+    CHECK(did_you_mean("paint", names).empty());
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,98 @@
+// Scenes in other units: times a power of two the image keeps its bits, times a power of ten what rounding leaves of it.
+#include <fmt/core.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/kernels/random_scene.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/scene/scaled_scene.hpp"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+const RingCase kCase{.width = 48, .height = 48, .pes = 48, .lanes = 4};
+
+RingCase in_format(const std::string& format) {
+    RingCase c = kCase;
+    c.format = format;
+    return c;
+}
+
+/// A scene of the project without its planes, whose horizon depends on the format's range and not on the scene.
+Scene without_planes(const std::string& name) {
+    Scene scene = project_scene(name);
+    scene.planes.clear();
+    return scene;
+}
+
+/// Mean of the differences of all channels, clamped to 0..1.
+double mean_difference(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.rgb.size(); ++i)
+        sum += std::abs(std::clamp(a.rgb[i], 0.0f, 1.0f) - std::clamp(b.rgb[i], 0.0f, 1.0f));
+    return sum / static_cast<double>(a.rgb.size());
+}
+
+}  // namespace
+
+// Where no number of either comes near the format's limits: in e5mY, with numbers down to 2^-14 only, some always do.
+TEST_CASE("a scene times a power of two gives the same bits and counts", "[ring][scales]") {
+    for (const char* format : quick(2, {"spa22", "fp32", "e8m7t", "e7m12", "e6m10"}))
+        for (const char* name : quick(2, {"mirrors", "cones", "polygons", "centre", "glass", "spheres"})) {
+            const Scene scene = without_planes(name);
+            const RingResult as_is = render_scene(scene, in_format(format));
+            CHECK(as_is.all.events[RAYA_PRIMARY_HITS] > 100);
+            for (const int k : {14, -17}) {
+                CAPTURE(format, name, k);
+                const RingResult scaled = render_scene(scaled_scene(scene, std::ldexp(1, k)), in_format(format));
+                CHECK(pixel_hash(scaled.image) == pixel_hash(as_is.image));
+                CHECK(scaled.all.events == as_is.all.events);
+            }
+        }
+}
+
+TEST_CASE("so does a random scene, with a grid too", "[ring][scales]") {
+    for (std::uint32_t seed = 1; seed <= quick_cases(2, 60); ++seed) {
+        Scene scene = mixed_scene(seed);
+        scene.planes.clear();
+        const int k = (seed % 2 == 0 ? 1 : -1) * static_cast<int>(14 + seed % 10);
+        CAPTURE(seed, k);
+        const RingResult as_is = render_scene(scene, in_format("spa22"));
+        RingSettings settings = settings_of(in_format("spa22"));
+        settings.accel.grid = true;
+        Session session(choose_device(""));
+        const Scene other = scaled_scene(scene, std::ldexp(1, k));
+        CHECK(pixel_hash(render_scene(other, in_format("spa22")).image) == pixel_hash(as_is.image));
+        CHECK(pixel_hash(RingRenderer(session, other, settings).render().image) == pixel_hash(as_is.image));
+    }
+}
+
+// A plane ends where hits no longer count; the scale leaves it 256 times the scene's largest length.
+TEST_CASE("where a scene is scaled its planes end nearer, and only there the image differs", "[ring][scales]") {
+    const Scene scene = project_scene("spheres");
+    const RingResult as_is = render_scene(scene, in_format("spa22"));
+    const RingResult scaled = render_scene(scaled_scene(scene, 0x1p14), in_format("spa22"));
+    CHECK(scaled.scale.exponent != 0);
+    const double difference = mean_difference(as_is.image, scaled.image);
+    INFO(difference);
+    CHECK(difference < 0.01);
+    CHECK(scaled.all.events[RAYA_PRIMARY_HITS] > as_is.all.events[RAYA_PRIMARY_HITS] * 95 / 100);
+}
+
+TEST_CASE("a scene times a power of ten is the same picture, to rounding", "[ring][scales]") {
+    // Lengths that are rounded otherwise move edges by a fraction of a pixel, and rays between mirrors by more.
+    for (const auto& [format, most] : {std::pair{"fp32", 1e-6}, {"spa22", 2e-4}, {"e5m10", 5e-3}})
+        for (const char* name : quick(1, {"mirrors", "polygons", "cones", "centre"}))
+            for (const int k : {-5, 4}) {
+                const Scene scene = without_planes(name);
+                const double difference =
+                    mean_difference(render_scene(scene, in_format(format)).image,
+                                    render_scene(scaled_scene(scene, std::pow(10, k)), in_format(format)).image);
+                CAPTURE(format, name, k, difference);
+                CHECK(difference < most);
+            }
+}
+
+}  // namespace raya

@@ -1,0 +1,31 @@
+// The same scene in other units.
+#pragma once
+#include "host/scene/scene.hpp"
+
+namespace raya {
+
+/// Every length times `factor`: places, radii, the sides of checkers; colours, directions and angles stay.
+inline Scene scaled_scene(Scene scene, double factor) {
+    scene.view.from *= factor;
+    scene.view.at *= factor;
+    scene.view.hither *= factor;
+    for (Light& l : scene.lights) l.position *= factor;
+    for (Surface& s : scene.surfaces)
+        if (s.checker) s.checker->size *= factor;
+    for (Sphere& s : scene.spheres) {
+        s.centre *= factor;
+        s.radius *= factor;
+    }
+    for (Plane& p : scene.planes) p.distance *= factor;
+    for (Polygon& p : scene.polygons)
+        for (Vec3& v : p.vertices) v *= factor;
+    for (Cone& c : scene.cones) {
+        c.base *= factor;
+        c.apex *= factor;
+        c.base_radius *= factor;
+        c.apex_radius *= factor;
+    }
+    return scene;
+}
+
+}  // namespace raya

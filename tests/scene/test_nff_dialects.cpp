@@ -1,0 +1,121 @@
+// Files by other people: what is passed over, how that is told, and what is refused all the same.
+#include "host/scene/nff_dialects.hpp"
+
+#include <fmt/core.h>
+
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "host/error.hpp"
+#include "host/scene/nff_reader.hpp"
+
+namespace raya {
+namespace {
+using Catch::Matchers::Contains;
+
+const std::string kView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\n";  // 7 lines
+const std::string kSphere = "s 0 0 0 1\n";
+
+struct Passed {
+    Scene scene;
+    std::vector<std::string> told;
+};
+
+Passed pass(const std::string& text) {
+    Passed passed;
+    std::vector<NffRemark> remarks;
+    passed.scene = parse_nff(text, "t.nff", &remarks);
+    for (const NffRemark& remark : remarks) passed.told.push_back(remark_text("t.nff", remark));
+    return passed;
+}
+
+using Told = std::vector<std::string>;
+
+TEST_CASE("a scene that is NFF alone has no remarks", "[dialects]") { CHECK(pass(kView + kSphere).told.empty()); }
+
+TEST_CASE("facets without area are left out and counted", "[dialects]") {
+    const Passed passed = pass(kView + "p 3\n0 0 0\n1 0 0\n2 0 0\n" + kSphere + "p 3\n0 0 0\n0 0 0\n2 0 0\n" +
+                               "pp 3\n1 1 1 0 0 1\n1 1 1 0 0 1\n1 1 1 0 0 1\np 2\n0 0 0\n1 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
+    CHECK(passed.told == Told{"t.nff:8: polygon without area, left out (4 in all)"});
+    CHECK(passed.scene.polygons.size() == 1);
+    CHECK(passed.scene.spheres.size() == 1);
+}
+
+TEST_CASE("a checker before a facet that is left out goes with it", "[dialects]") {
+    const Passed passed = pass(kView + "#raya checker 1 1 1 0 0 0 1\np 3\n0 0 0\n1 0 0\n2 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
+    REQUIRE(passed.scene.polygons.size() == 1);
+    CHECK_FALSE(passed.scene.surfaces[0].checker);
+}
+
+TEST_CASE("polygons that are not flat are cut into triangles, patches with their normals", "[dialects]") {
+    const std::string bent = "0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n";
+    const Passed flat = pass(kView + "p 4\n" + bent);
+    CHECK(flat.told == Told{"t.nff:8: polygon that is not flat, cut into triangles"});
+    REQUIRE(flat.scene.polygons.size() == 2);
+    for (const Polygon& triangle : flat.scene.polygons) CHECK(triangle.vertices.size() == 3);
+    const Passed patch = pass(kView + "pp 4\n0 0 0 0 0 1\n1 0 0 1 0 0\n1 1 0.5 0 1 0\n0 1 0 0 0 1\n");
+    REQUIRE(patch.scene.polygons.size() == 2);
+    for (const Polygon& triangle : patch.scene.polygons)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool second = triangle.vertices[i] == Vec3(1, 0, 0), third = triangle.vertices[i] == Vec3(1, 1, 0.5);
+            CHECK(triangle.normals[i] == (second ? Vec3(1, 0, 0) : third ? Vec3(0, 1, 0) : Vec3(0, 0, 1)));
+        }
+    CHECK(pass(kView + "p 4\n0 0 0\n1 0 0\n1 1 0.0001\n0 1 0\n").told.empty());  // a hair off its plane, as ever
+}
+
+TEST_CASE("objects without size and normals without length are passed over", "[dialects]") {
+    const Passed passed = pass(kView + kSphere + "s 1 1 1 0\nc 0 0 0 0 0 0 1 0\nc 0 0 0 1 0 0 0 1\n" +
+                               "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n");
+    CHECK(passed.told == Told{"t.nff:9: sphere of radius 0, left out", "t.nff:10: cone without radius, left out",
+                              "t.nff:11: cone without height, left out",
+                              "t.nff:12: patch with a normal of 0, taken as a flat polygon"});
+    CHECK(passed.scene.object_count() == 2);
+    CHECK(passed.scene.polygons[0].normals.empty());
+}
+
+TEST_CASE("entities of other dialects are skipped with the numbers that follow them", "[dialects]") {
+    const Passed passed = pass("number 3\n" + kView + "la 0.2 0.2 0.2\n" + kSphere +
+                               "lf 0 0 0\n1 1 1\n 0.5\ntt wood.ppm 1 2 3\n0 0 0 0 0\n1 0 0 1 0\nQ\nla 0.1 0.1 0.1  # again\n" +
+                               "texture marble.tga\n" + kSphere);
+    CHECK(passed.told ==
+          Told{"t.nff:1: entity 'number' of another dialect, skipped", "t.nff:9: entity 'la' of another dialect, skipped (2 in all)",
+               "t.nff:11: entity 'lf' of another dialect, skipped", "t.nff:14: entity 'tt' of another dialect, skipped",
+               "t.nff:17: entity 'Q' of another dialect, skipped", "t.nff:19: entity 'texture' of another dialect, skipped"});
+    CHECK(passed.scene.spheres.size() == 2);
+}
+
+TEST_CASE("a mail header before the scene is skipped, and lines are counted from the file's first", "[dialects]") {
+    const std::string header = "From eye@world Thu Dec 10\nSubject: a teapot, at last: see below\nX-Mailer: none\n\tand more\n\n";
+    for (const std::string end : {"\n", "\r\n"}) {
+        std::string text = header + "# a comment\n" + kView + "s 0 0 0 0\n" + kSphere;
+        for (std::size_t at = 0; end.size() > 1 && (at = text.find('\n', at)) != text.npos; at += 2) text.replace(at, 1, end);
+        CHECK(pass(text).told == Told{"t.nff:1: mail header before the scene, skipped", "t.nff:14: sphere of radius 0, left out"});
+    }
+    CHECK_THROWS_WITH(pass(header + kView), Contains("t.nff:13: no object"));
+    CHECK_THROWS_WITH(parse_nff(header + kView + kSphere, "t.nff"), Contains("t.nff:1: unknown entity 'From'"));
+}
+
+TEST_CASE("what is no NFF at all is refused, and so is what leaves no scene", "[dialects]") {
+    for (const std::string line : {"This is a story of a teapot.", "hello world", "solid teapot", "outer loop", "<html>", "{ 1 2 }",
+                                   "verylongword 1 2 3", "a b c d 1", "int main() { return 0; }"}) {
+        CAPTURE(line);
+        CHECK_THROWS_WITH(pass(kView + line + "\n" + kSphere), Contains("t.nff:8: unknown entity"));
+    }
+    CHECK_THROWS_WITH(pass("la 1 1 1\n" + kSphere), Contains("no 'v'"));
+    CHECK_THROWS_WITH(pass(kView + "tt wood.ppm\n0 0 0\n"), Contains("no object"));
+    CHECK_THROWS_WITH(pass(kView + "s 0 0 0\n"), Contains("file ends"));       // NFF's own entities are held to NFF
+    CHECK_THROWS_WITH(pass(kView + "s 0 0 0 1 2\n"), Contains("follows the end"));
+    CHECK_THROWS_WITH(pass(kView + kView + kSphere), Contains("second 'v'"));
+}
+
+TEST_CASE("without a place for remarks all of it is refused", "[dialects]") {
+    for (const std::string entity : {"p 3\n0 0 0\n1 0 0\n2 0 0\n", "p 4\n0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n", "s 1 1 1 0\n", "la 1 1 1\n",
+                                     "Q\n", "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n", "p 2\n0 0 0\n1 0 0\n"}) {
+        CAPTURE(entity);
+        CHECK_THROWS_AS(parse_nff(kView + entity + kSphere, "t.nff"), UserError);
+        CHECK_NOTHROW(pass(kView + entity + kSphere));
+    }
+}
+
+}  // namespace
+}  // namespace raya

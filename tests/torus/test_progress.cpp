@@ -1,0 +1,30 @@
+// What a render of the torus says of how far it has come.
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "tests/torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+TEST_CASE("the torus is not done before its last packets are, and says so", "[torus]") {
+    Session session(choose_device(""));
+    const TorusCase c{.width = 24, .height = 24, .nodes = {2, 2, 2}, .lanes = 4, .group = 1, .bounces = 8};
+    for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
+        TorusCase one = c;
+        one.inject = inject;
+        TorusRenderer renderer(session, project_scene("centre"), settings_of(one));
+        std::vector<double> shares;
+        const TorusResult result = renderer.render([&](double done) { shares.push_back(done); });
+        REQUIRE(shares.size() == result.supersteps.size());
+        CHECK(shares.back() == 1);
+        for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
+            CAPTURE(i, shares.size());
+            CHECK(shares[i] < 1);
+        }
+        for (int k : {1, 3, 5, 7, 9}) WARN(k << " " << shares[shares.size() * k / 10]);
+    }
+}
+
+}  // namespace
+}  // namespace raya
