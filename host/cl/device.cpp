@@ -125,7 +125,8 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
     if (devices.empty()) {
         throw DeviceError(
             "no OpenCL device found; remedy: install a driver (Debian: apt install pocl-opencl-icd), look at the "
-            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists; PoCL shows none where it "
+            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists; PoCL shows none where "
+            "it "
             "may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME)");
     }
     if (wanted.empty()) return default_index(devices);

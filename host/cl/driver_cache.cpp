@@ -39,8 +39,9 @@ void provide_driver_cache() {
     fs::permissions(own, fs::perms::owner_all, error);
     if (error || ::access(own.c_str(), W_OK | X_OK) != 0) return;
     ::setenv("POCL_CACHE_DIR", own.c_str(), 1);
-    say(fmt::format("raya: warning: {} may not be written: PoCL keeps its kernels in {}; POCL_CACHE_DIR names another place\n",
-                    usual.string(), own.string()));
+    say(fmt::format(
+        "raya: warning: {} may not be written: PoCL keeps its kernels in {}; POCL_CACHE_DIR names another place\n",
+        usual.string(), own.string()));
 }
 
 }  // namespace raya

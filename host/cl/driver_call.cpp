@@ -36,9 +36,11 @@ extern "C" void explain(int signal) {
     tell(::sigabbrev_np(signal));
     tell(") while ");
     tell(what);
-    tell("; what it said stands above; remedy: POCL_CACHE_DIR=DIR with an empty folder in place of a cache that may be "
-         "damaged, more memory (ulimit -v), a /sys that is mounted, another driver (raya devices), and raya verify, which "
-         "says what a driver does wrong\n");
+    tell(
+        "; what it said stands above; remedy: POCL_CACHE_DIR=DIR with an empty folder in place of a cache that may be "
+        "damaged, more memory (ulimit -v), a /sys that is mounted, another driver (raya devices), and raya verify, "
+        "which "
+        "says what a driver does wrong\n");
     ::_exit(kExitDeviceError);
 }
 
@@ -60,8 +62,9 @@ void set_handler(int signal, void (*from)(int), void (*to)(int)) {
 
 }  // namespace
 
-// In the place of the C library's, for the program and its libraries: LLVM, in PoCL, would put a handler of its own in the
-// place of ours and call ours after it, as it does for other signals; but after one handler abort() waits for no other.
+// In the place of the C library's, for the program and its libraries: LLVM, in PoCL, would put a handler of its own in
+// the place of ours and call ours after it, as it does for other signals; but after one handler abort() waits for no
+// other.
 extern "C" __attribute__((visibility("default"))) int sigaction(int signal, const struct sigaction* action,
                                                                 struct sigaction* before) noexcept {
     const bool is_ours = signal == SIGABRT && explains.load();

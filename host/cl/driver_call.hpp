@@ -17,8 +17,8 @@ class DriverCall {
 };
 
 /// From now on a driver that aborts or crashes is named on stderr with what it was doing and with remedies, files in
-/// progress are removed, and the exit code is that of a DeviceError. Crashes elsewhere end the program as ever; so do all
-/// where something else, such as a sanitizer, handles them.
+/// progress are removed, and the exit code is that of a DeviceError. Crashes elsewhere end the program as ever; so do
+/// all where something else, such as a sanitizer, handles them.
 void explain_driver_crashes();
 
 /// Crashes end the program by their signal again: for a process whose parent wants to see it.

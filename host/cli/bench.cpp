@@ -148,10 +148,11 @@ void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
     if (command.ways.empty() || command.ways != std::vector<std::string>(command.ways.size(), "torus")) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
         if (parsed.count(option) > 0)
-            throw UserError(fmt::format(
-                "{} with --ways torus: the torus has 4x4x4 nodes without a memory limit, whose voxels are no mapping of "
-                "pixels; leave it out, or add the way none",
-                option));
+            throw UserError(
+                fmt::format("{} with --ways torus: the torus has 4x4x4 nodes without a memory limit, whose voxels are "
+                            "no mapping of "
+                            "pixels; leave it out, or add the way none",
+                            option));
 }
 
 void bench(const CLI::App& parsed, BenchCommand command) {

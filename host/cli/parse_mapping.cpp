@@ -104,9 +104,8 @@ MappingText parse_mapping(const std::string& text) {
     const auto* const found = std::find_if(std::begin(names), std::end(names),
                                            [&](const Name& n) { return n.name == text.substr(0, colon); });
     if (found == std::end(names))
-        throw UserError(
-            fmt::format("--mapping {}: no such mapping, there are {}, dynamic:CHUNK, hybrid:CHUNK", text,
-                        fmt::join(mapping_forms(), ", ")));
+        throw UserError(fmt::format("--mapping {}: no such mapping, there are {}, dynamic:CHUNK, hybrid:CHUNK", text,
+                                    fmt::join(mapping_forms(), ", ")));
     MappingText mapping{text, found->alone, found->leaves_offset};
     if (colon == std::string::npos && !found->needs_more) return mapping;
     mapping.rule.parameter = parse_parameter(mapping, colon == std::string::npos ? "" : text.substr(colon + 1));

@@ -37,8 +37,8 @@ void check_packets(const std::string& file) {
 void check_targets(const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
     if (!packets.empty()) check_packets(packets);
-    check_distinct(command.render.scene, {command.image, command.cost, command.mask, command.report, packets,
-                                          command.trace.file});
+    check_distinct(command.render.scene,
+                   {command.image, command.cost, command.mask, command.report, packets, command.trace.file});
     check_writable_target(command.image, kImageExtensions);
     if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
     if (!command.mask.empty()) check_writable_target(command.mask, kImageExtensions);
@@ -56,9 +56,10 @@ void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& dev
         report.measured.roofline = roofline(peak, works, report.measured.commands);
         constexpr double kMuch = 0.15;  // idle machines stay below a tenth
         if (peak.scatter > kMuch)
-            warnings.add(fmt::format("the device's peak, measured three times, scatters by {:.0f} %: something else runs on it, "
-                                     "and shares of the peak say little",
-                                     100 * peak.scatter));
+            warnings.add(
+                fmt::format("the device's peak, measured three times, scatters by {:.0f} %: something else runs on it, "
+                            "and shares of the peak say little",
+                            100 * peak.scatter));
         report.warnings = warnings.texts();
     } catch (const DeviceError& error) {  // the render's own figures stand
         report.measured.roofline.emplace().lacking = error.what();

@@ -13,10 +13,11 @@ namespace raya {
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
     add_strict_option(command, o.strict);
-    add_value(command, "--machine", o.machine,
-              "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
-              "cap (256 PEs), pixel-machine (64), links (256): those machines' arrays, on PEs of spa, without a limit to "
-              "their memory so that any loads can be compared")
+    add_value(
+        command, "--machine", o.machine,
+        "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
+        "cap (256 PEs), pixel-machine (64), links (256): those machines' arrays, on PEs of spa, without a limit to "
+        "their memory so that any loads can be compared")
         ->type_name("NAME")
         ->capture_default_str();
     add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
@@ -61,10 +62,11 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
               "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
         ->type_name("axes|diagonals")
         ->default_str("axes");
-    add_value(command, "--accel", o.accel,
-              "grid: rays walk through voxels inside each PE's memory and meet the objects listed there, the same hits "
-              "sooner, from some 200 objects on (fp32; 400 in a reduced format) and slower below; A x B x C voxels along x, "
-              "y, z, by default some for each object; none: every ray is tested against all objects")
+    add_value(
+        command, "--accel", o.accel,
+        "grid: rays walk through voxels inside each PE's memory and meet the objects listed there, the same hits "
+        "sooner, from some 200 objects on (fp32; 400 in a reduced format) and slower below; A x B x C voxels along x, "
+        "y, z, by default some for each object; none: every ray is tested against all objects")
         ->type_name("none|grid[:AxBxC]")
         ->capture_default_str();
     add_value(command, "--pe-memory", o.pe_memory,

@@ -15,9 +15,10 @@ void Warnings::add(const std::string& text) {
 }
 
 void add_strict_option(CLI::App& command, bool& strict) {
-    command.add_flag("--strict", strict,
-                     "Refuse a scene with facets that have no area or are not flat, or with entities that are not NFF's, "
-                     "in place of leaving them out, cutting them into triangles or skipping them with a warning");
+    command.add_flag(
+        "--strict", strict,
+        "Refuse a scene with facets that have no area or are not flat, or with entities that are not NFF's, "
+        "in place of leaving them out, cutting them into triangles or skipping them with a warning");
 }
 
 SceneInput read_scene(const std::string& file, bool strict) {
@@ -42,12 +43,14 @@ void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warning
                              scene.name, scene.object_count()));
 }
 
-void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format, Warnings& warnings) {
+void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format,
+                          Warnings& warnings) {
     if (scale.vanishing == 0) return;
-    warnings.add(fmt::format(
-        "{}: {} spheres, cones or checkers are not seen: they are smaller than {:.3g}, the least that {} holds beside a "
-        "length of {:.3g}; remedy: --format fp32",
-        scene.name, scale.vanishing, scale.least, format_name(format), scale.largest));
+    warnings.add(
+        fmt::format("{}: {} spheres, cones or checkers are not seen: they are smaller than {:.3g}, the least that {} "
+                    "holds beside a "
+                    "length of {:.3g}; remedy: --format fp32",
+                    scene.name, scale.vanishing, scale.least, format_name(format), scale.largest));
 }
 
 }  // namespace raya

@@ -16,7 +16,8 @@ fs::path find_module(const std::string& file) {
     const std::array<fs::path, 3> folders = {program, program / "../lib/raya", RAYA_MODULE_FOLDER};
     for (const fs::path& folder : folders)
         if (fs::exists(folder / file, failure)) return folder / file;
-    throw ModuleError(fmt::format("{} lies neither beside the program nor in {}", file, folders[1].lexically_normal().string()));
+    throw ModuleError(
+        fmt::format("{} lies neither beside the program nor in {}", file, folders[1].lexically_normal().string()));
 }
 
 std::string loader_error() {

@@ -10,7 +10,8 @@ struct ModuleError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The function `symbol` of the module `name` (a file NAME.so), which stays loaded. It is looked for beside the program, in
+/// The function `symbol` of the module `name` (a file NAME.so), which stays loaded. It is looked for beside the
+/// program, in
 /// ../lib/raya/ from there, and where the build left it. Throws ModuleError.
 void* module_function(const std::string& name, const char* symbol);
 

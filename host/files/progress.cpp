@@ -50,9 +50,8 @@ std::string ProgressBar::line(Clock::time_point now) const {
     const double elapsed = std::chrono::duration<double>(now - stage_began_).count();
     if (done_.value_or(0) < kEnough) return fmt::format("{} ... {:.0f} s", what_, elapsed);
     const int filled = static_cast<int>(*done_ * kWidth);
-    return fmt::format("[{}{}] {:3.0f} %  {:.0f} s left", std::string(filled, '#'),
-                       std::string(kWidth - filled, '.'), std::min(99.0, std::floor(100 * *done_)),
-                       elapsed * (1 - *done_) / *done_);
+    return fmt::format("[{}{}] {:3.0f} %  {:.0f} s left", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+                       std::min(99.0, std::floor(100 * *done_)), elapsed * (1 - *done_) / *done_);
 }
 
 }  // namespace raya

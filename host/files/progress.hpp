@@ -13,9 +13,9 @@ namespace raya {
 /// Called now and then with the share of the work that is done, 0..1.
 using ProgressCallback = std::function<void(double)>;
 
-/// Draws on stderr, only if that is a terminal: from one second on, five times a second, whatever the command is about. What
-/// runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of scope;
-/// who prints before that clears it (say.hpp).
+/// Draws on stderr, only if that is a terminal: from one second on, five times a second, whatever the command is about.
+/// What runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of
+/// scope; who prints before that clears it (say.hpp).
 class ProgressBar {
   public:
     ProgressBar(bool wanted, const std::string& what);

@@ -1,5 +1,5 @@
-// What the module of picture formats does for the program: the one place that knows OpenImageIO, whose 250 libraries take
-// longer to load than a small render takes.
+// What the module of picture formats does for the program: the one place that knows OpenImageIO, whose 250 libraries
+// take longer to load than a small render takes.
 #pragma once
 #include <string>
 #include <utility>

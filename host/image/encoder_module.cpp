@@ -11,7 +11,8 @@ namespace {
 
 OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     const bool codes = std::string_view(picture.format) == "png";
-    OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, codes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+    OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
+                         codes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
     if (picture.channels == 1) spec.channelnames = {"Y"};
     spec.attribute("oiio:ColorSpace", codes ? "sRGB" : "Linear");
     for (const auto& [key, text] : picture.attributes) spec.attribute("raya:" + key, text);
@@ -44,6 +45,7 @@ bool encode(const PictureToEncode& picture, std::string& told) {
 }  // namespace
 }  // namespace raya
 
-extern "C" __attribute__((visibility("default"))) bool raya_encode_picture(const raya::PictureToEncode& picture, std::string& told) {
+extern "C" __attribute__((visibility("default"))) bool raya_encode_picture(const raya::PictureToEncode& picture,
+                                                                           std::string& told) {
     return raya::encode(picture, told);
 }

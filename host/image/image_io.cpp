@@ -52,7 +52,8 @@ void check_shape(int width, int height, std::size_t channels, std::size_t floats
 /// Loads the module at the first call.
 EncodePicture* encoder(const fs::path& path) {
     try {
-        static auto* const function = reinterpret_cast<EncodePicture*>(module_function(kEncoderModule, kEncoderFunction));
+        static auto* const function =
+            reinterpret_cast<EncodePicture*>(module_function(kEncoderModule, kEncoderFunction));
         return function;
     } catch (const ModuleError& error) {
         refuse_to_encode(path, error.what());
@@ -76,7 +77,8 @@ std::string encode_png(const fs::path& path, const Pixels& pixels, const ImageAt
 void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttributes& attributes) {
     const std::string extension = lower_case_extension(path);
     if (extension == ".png") return write_whole_file(path, encode_png(path, pixels, attributes));
-    if (extension == ".exr") return write_whole_file(path, encode(path, "exr", pixels, pixels.values.data(), attributes));
+    if (extension == ".exr")
+        return write_whole_file(path, encode(path, "exr", pixels, pixels.values.data(), attributes));
     write_whole_file(path, encode_pfm(pixels.width, pixels.height, pixels.channels, pixels.values));
 }
 

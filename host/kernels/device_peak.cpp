@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-constexpr int kSamples = 2;  // each of three times
+constexpr int kSamples = 2;                                      // each of three times
 constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // of kOperations
 
 // Two buffers, an eighth of the memory at most.
@@ -57,8 +57,9 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
         for (int i = 0; i < kTimes; ++i) {
             const DevicePeak peak = peak_once(session, format, lanes);
             least = std::min(least, peak.fp32_per_s);
-            for (double DevicePeak::*rate : {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
-                                             &DevicePeak::root_per_s, &DevicePeak::copy_bytes_per_s})
+            for (double DevicePeak::*rate :
+                 {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
+                  &DevicePeak::root_per_s, &DevicePeak::copy_bytes_per_s})
                 best.*rate = std::max(best.*rate, peak.*rate);
             best.copy_bytes = peak.copy_bytes;
         }

@@ -10,8 +10,8 @@ namespace raya {
 
 /// Rates of operations (kernels/operation_rates.hpp) in fp32 with the device's default lanes and in `format` with
 /// `lanes`, and of copies between two buffers of up to 256 MB, more than caches hold; measured three times over, the
-/// best of all, in some seconds. In a session of its own, so that no other profile sees it. All 0 where the device does not time its
-/// commands. Throws DeviceError.
+/// best of all, in some seconds. In a session of its own, so that no other profile sees it. All 0 where the device does
+/// not time its commands. Throws DeviceError.
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes);
 
 }  // namespace raya

@@ -5,8 +5,8 @@
 
 namespace raya {
 
-/// Below 1 KB in bytes, else in KB with a decimal where they are no whole ones: what is needed rounded up, what there is
-/// rounded down, so that what does not fit never reads as if it did.
+/// Below 1 KB in bytes, else in KB with a decimal where they are no whole ones: what is needed rounded up, what there
+/// is rounded down, so that what does not fit never reads as if it did.
 std::string needed_text(std::uint64_t bytes);
 std::string present_text(std::uint64_t bytes);
 

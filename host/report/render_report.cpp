@@ -186,10 +186,9 @@ std::string antialias_lines(const RenderReport& r) {
 std::string model_line(const RenderReport& r) {
     if (!r.modelled) return {};
     const ModelledTime& t = *r.modelled;
-    return fmt::format(
-        "model   objects {}, compute {}, communication {}, image {}: {} (modelled time of {})\n",
-        time_text(t.objects_ms), time_text(t.compute_ms), time_text(t.communication_ms), time_text(t.image_ms),
-        time_text(t.total_ms), r.machine.name);
+    return fmt::format("model   objects {}, compute {}, communication {}, image {}: {} (modelled time of {})\n",
+                       time_text(t.objects_ms), time_text(t.compute_ms), time_text(t.communication_ms),
+                       time_text(t.image_ms), time_text(t.total_ms), r.machine.name);
 }
 
 // Machine and what lies where.
@@ -217,8 +216,7 @@ std::string scale_line(const RenderReport& r) {
 
 std::string memory_line(const RenderReport& r) {
     return fmt::format(
-        "memory  {} in {}{}{}\n", needed_text(r.machine.pe_memory_used_bytes),
-        r.torus ? "the fullest node" : "each PE",
+        "memory  {} in {}{}{}\n", needed_text(r.machine.pe_memory_used_bytes), r.torus ? "the fullest node" : "each PE",
         r.machine.pe_memory_bytes ? fmt::format(" of {}", present_text(r.machine.pe_memory_bytes)) : ", no limit",
         r.torus ? torus_memory_text(*r.torus) : "");
 }
@@ -236,10 +234,9 @@ std::string human_summary(const RenderReport& r) {
     text += load_line("load", r.load, r.requests ? ", simulated" : "");
     text += r.torus ? torus_lines(*r.torus) : antialias_lines(r) + model_line(r);
     text += accel_line(r) + scale_line(r) + memory_line(r);
-    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({} lanes)\n",
-                        r.measured.build_s, r.measured.render_s,
-                        rate_text(static_cast<double>(rays) / r.measured.render_s),
-                        r.device.name, r.device.lanes);
+    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({} lanes)\n", r.measured.build_s,
+                        r.measured.render_s, rate_text(static_cast<double>(rays) / r.measured.render_s), r.device.name,
+                        r.device.lanes);
     text += fmt::format("image   {} ({})\n", r.image.file, r.image.hash);
     return text;
 }

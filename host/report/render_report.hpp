@@ -61,7 +61,7 @@ struct RenderReport {
         std::uint32_t pes = 0;
         std::optional<std::uint32_t> offset;  // p of a mapping with slots
         std::uint32_t bounces = 0;
-        int length_exponent = 0;            // lengths of the scene are multiplied by 2^this (host/scene/length_scale.hpp)
+        int length_exponent = 0;  // lengths of the scene are multiplied by 2^this (host/scene/length_scale.hpp)
         std::uint64_t pe_memory_bytes = 0;  // 0: no limit
         std::uint64_t pe_memory_used_bytes = 0;
     } machine;

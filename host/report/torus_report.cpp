@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "host/files/json.hpp"
-#include "host/machine/unit_text.hpp"
 #include "host/machine/budget.hpp"
 #include "host/machine/t805.hpp"
+#include "host/machine/unit_text.hpp"
 
 namespace raya {
 namespace {
@@ -89,12 +89,11 @@ std::string torus_lines(const TorusReport& t) {
                         t.hops, t.link.count, bytes_text(static_cast<double>(t.link.total_bytes)),
                         bytes_text(t.link.mean_bytes()), bytes_text(static_cast<double>(t.link.max_bytes)));
     const TorusTime& m = t.modelled;
-    return text +
-           fmt::format(
-               "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step "
-               "(modelled time of T805s)\n",
-               time_text(m.overlapped_ms), time_text(m.processor_ms), time_text(m.compute_ms),
-               time_text(m.messages_ms), time_text(m.links_ms), time_text(m.stepwise_ms));
+    return text + fmt::format(
+                      "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step "
+                      "(modelled time of T805s)\n",
+                      time_text(m.overlapped_ms), time_text(m.processor_ms), time_text(m.compute_ms),
+                      time_text(m.messages_ms), time_text(m.links_ms), time_text(m.stepwise_ms));
 }
 
 std::string torus_memory_text(const TorusReport& t) {

@@ -11,8 +11,8 @@
 namespace raya {
 namespace {
 
-// Powers of two: between a scene that is packed as it is and the format's lower limits; from the largest length of a scene
-// with planes that is scaled to their horizon.
+// Powers of two: between a scene that is packed as it is and the format's lower limits; from the largest length of a
+// scene with planes that is scaled to their horizon.
 constexpr double kSpare = 2, kHorizon = 6;
 
 /// Calls `see` with each length that must not come out as 0: its square is stored, or it stands under a fraction.
@@ -52,10 +52,11 @@ int exponent_for(const Room& room) {
 }
 
 [[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {
-    throw UserError(fmt::format(
-        "{}: its lengths, from {:.3g} to {:.3g}, are too far apart for {}: where the largest fits, nothing below {:.3g} "
-        "can be seen, and that is every object; remedy: --format fp32, or bring nearer what is so far off",
-        scene.name, scale.smallest, scale.largest, format_name(format), scale.least));
+    throw UserError(
+        fmt::format("{}: its lengths, from {:.3g} to {:.3g}, are too far apart for {}: where the largest fits, nothing "
+                    "below {:.3g} "
+                    "can be seen, and that is every object; remedy: --format fp32, or bring nearer what is so far off",
+                    scene.name, scale.smallest, scale.largest, format_name(format), scale.least));
 }
 
 }  // namespace

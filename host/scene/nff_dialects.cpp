@@ -43,6 +43,12 @@ bool reads_as_entity(std::string_view keyword, std::string_view rest) {
     return reads_as_keyword(keyword) && words <= (numbers > 0 ? kMostWords : 0);
 }
 
+bool opens_sense8(std::string_view word) {
+    constexpr std::string_view kWord = "nff";
+    return std::equal(word.begin(), word.end(), kWord.begin(), kWord.end(),
+                      [](char c, char lower) { return is_letter(c) && (c | 0x20) == lower; });
+}
+
 Header mail_header(std::string_view text) {
     const auto line_at = [&](std::size_t at) { return text.substr(at, text.find_first_of(kLineEnds, at) - at); };
     std::size_t at = std::min(text.find_first_not_of("\r\n \t\v\f"), text.size());

@@ -5,10 +5,13 @@
 
 namespace raya {
 
-/// Whether a line reads as an entity that somebody has added to NFF (`la 0.2 0.2 0.2`, `tt wood.ppm 0 0 1`, `Q`), not as
-/// prose: a short keyword of letters and digits; behind it numbers, names of files, and beside numbers at most two other
-/// words. `rest`: the line behind the keyword.
+/// Whether a line reads as an entity that somebody has added to NFF (`la 0.2 0.2 0.2`, `tt wood.ppm 0 0 1`, `Q`), not
+/// as prose: a short keyword of letters and digits; behind it numbers, names of files, and beside numbers at most two
+/// other words. `rest`: the line behind the keyword.
 bool reads_as_entity(std::string_view keyword, std::string_view rest);
+
+/// Whether a text with that first word is Sense8's NFF, another format of the same name.
+bool opens_sense8(std::string_view word);
 
 struct Header {
     std::size_t bytes = 0;  // 0: there is none

@@ -25,13 +25,6 @@ constexpr double kLargestShare = 100;   // Kd, Ks, T; more than 1 is unphysical,
 constexpr double kLeastUpAngle = 1e-6;  // sine of the angle between the gaze and up, below which up is no help
 constexpr int kMostVertices = 1'000'000'000;
 
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return lower;
-}
-
 class NffReader {
   public:
     NffReader(std::string_view text, const std::string& name, int first_line, std::vector<NffRemark>* remarks)
@@ -41,7 +34,7 @@ class NffReader {
     }
 
     Scene read() {
-        if (lower_case(tokens_.peek().text) == "nff")
+        if (opens_sense8(tokens_.peek().text))
             tokens_.refuse(tokens_.peek().line,
                            "this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. "
                            "Haines's NFF");
@@ -57,8 +50,8 @@ class NffReader {
   private:
     [[noreturn]] void refuse(std::string_view reason) const { tokens_.refuse(tokens_.entity_line(), reason); }
 
-    /// Something that cannot be traced, but left out or mended: `what` says what becomes of it. Refused where there is no
-    /// place for remarks.
+    /// Something that cannot be traced, but left out or mended: `what` says what becomes of it. Refused where there is
+    /// no place for remarks.
     void pass_over(std::string_view reason, const std::string& what) {
         if (!remarks_) refuse(reason);
         add_remark(*remarks_, what, tokens_.entity_line());
@@ -204,7 +197,8 @@ class NffReader {
     void read_polygon(bool patch) {
         Polygon polygon;
         const int fewest = remarks_ ? 0 : 3;
-        const auto count = static_cast<std::size_t>(tokens_.take_integer("the number of vertices", fewest, kMostVertices));
+        const auto count =
+            static_cast<std::size_t>(tokens_.take_integer("the number of vertices", fewest, kMostVertices));
         const std::size_t shortest = patch ? 12 : 6;  // characters: one digit and one blank for each number
         if (count > tokens_.characters_left() / shortest + 2)
             refuse(fmt::format("the file is too short for a polygon of {} vertices", count));

@@ -31,9 +31,9 @@ namespace raya {
 /// `name` without folder. Throws UserError "NAME:LINE: reason" for anything that is not NFF or cannot be traced.
 ///
 /// Where `remarks` has a place, what other programs put up with is passed over and remarked, never taken silently:
-/// objects without size and facets without area are left out; polygons that are not flat are cut into triangles; patches
-/// with a normal of 0 become polygons; entities of other dialects (la, lf, tt, ...) and a mail header are skipped.
-/// Nothing that reads as prose is, and a file without view or objects is no scene.
+/// objects without size and facets without area are left out; polygons that are not flat are cut into triangles;
+/// patches with a normal of 0 become polygons; entities of other dialects (la, lf, tt, ...) and a mail header are
+/// skipped. Nothing that reads as prose is, and a file without view or objects is no scene.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr);
 
 /// Reads a file. Throws UserError as parse_nff() does, and "NAME: reason" where the file cannot be read.

@@ -156,8 +156,8 @@ int NffTokens::take_integer(std::string_view what, int lowest, int highest) {
     const int line = next_.line;
     const double value = take_number(what);
     if (value != std::floor(value) || value < lowest || value > highest)
-        refuse(line, fmt::format("{} of {} is {}: must be a whole number from {} to {}", what, in_quotes(entity_), value,
-                                 lowest, highest));
+        refuse(line, fmt::format("{} of {} is {}: must be a whole number from {} to {}", what, in_quotes(entity_),
+                                 value, lowest, highest));
     return static_cast<int>(value);
 }
 

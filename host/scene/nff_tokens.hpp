@@ -20,8 +20,8 @@ struct NffToken {
 /// Lines may end in LF, CR LF or CR. Every refusal is a UserError "NAME:LINE: reason".
 class NffTokens {
   public:
-    /// `text` must outlive this object; its lines are counted from `first_line`. Refuses a text with control characters:
-    /// it is a binary file.
+    /// `text` must outlive this object; its lines are counted from `first_line`. Refuses a text with control
+    /// characters: it is a binary file.
     NffTokens(std::string_view text, std::string name, int first_line = 1);
 
     /// The next token, which stays the next one.
@@ -40,8 +40,8 @@ class NffTokens {
     /// Takes a number that must be whole and lie in [lowest, highest].
     int take_integer(std::string_view what, int lowest, int highest);
 
-    /// Takes the rest of an entity that raya does not know: of its line, and all lines after it that begin with a number.
-    /// False where that line does not read as an entity; then nothing is taken.
+    /// Takes the rest of an entity that raya does not know: of its line, and all lines after it that begin with a
+    /// number. False where that line does not read as an entity; then nothing is taken.
     bool skip_unknown();
 
     /// Whether the next token reads as a number, be it a good one or not.

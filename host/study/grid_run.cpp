@@ -31,9 +31,7 @@ GridRun run_grid(Session& session, const LabelledScene& scene, const Divisions& 
                  const GridSettings& settings) {
     const RingSettings ring = ring_settings(divisions, settings);
     RingRenderer renderer(session, scene.scene, ring);
-    GridRun run{.label = scene.label,
-                .objects = scene.scene.object_count(),
-                .divisions = divisions};
+    GridRun run{.label = scene.label, .objects = scene.scene.object_count(), .divisions = divisions};
     run.measured_ms = measure(settings.runs, kEnoughS, [&] {
                           const RingResult result = renderer.render();
                           run.events = result.all.events;

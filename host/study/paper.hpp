@@ -59,8 +59,8 @@ inline constexpr UniformGrid kHavran[] = {{"balls", {46, 46, 3}, 358.66, 5.69},
 
 namespace raya {
 
-/// Whether a study is made as the paper made it: of the scene of its kind, under the name that it has within the program,
-/// and at its size. Beside any other the paper's figures would stand for nothing.
+/// Whether a study is made as the paper made it: of the scene of its kind, under the name that it has within the
+/// program, and at its size. Beside any other the paper's figures would stand for nothing.
 inline bool as_in_paper(const std::string& scene, std::uint32_t size) {
     return scene == "centre" && size == static_cast<std::uint32_t>(paper::kSize);
 }

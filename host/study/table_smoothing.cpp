@@ -56,7 +56,8 @@ std::vector<Comparison> filter_comparisons(const SmoothingRuns& study) {
             for (const bool fitted : {false, true}) {
                 const Row& row = study.rows[i];
                 all.push_back({row.name() + ": " + figure.what + (fitted ? ", fitted" : ""), "ms",
-                               printed(figure.paper[i], study.scene.label, study.size), figure.ours(fitted ? row.fitted : row.plain),
+                               printed(figure.paper[i], study.scene.label, study.size),
+                               figure.ours(fitted ? row.fitted : row.plain),
                                i == 1 && figure.paper[i] ? "[D] predicted from Table 3, not printed" : ""});
             }
     const std::optional<double> arithmetic = printed(paper::kFilterArithmeticMs, study.scene.label, study.size);
@@ -95,7 +96,8 @@ StudyPlot filter_plot(const SmoothingRuns& study, bool with_tracing, double pape
             return t.ring_ms + factor * (t.smooth_ms + (with_tracing ? t.trace_ms : 0));
         }));
     }
-    if (as_in_paper(study.scene.label, study.size)) plot.series.push_back({"paper", {0, 16}, {paper0, paper16}, PlotStyle::kPaper});
+    if (as_in_paper(study.scene.label, study.size))
+        plot.series.push_back({"paper", {0, 16}, {paper0, paper16}, PlotStyle::kPaper});
     return plot;
 }
 
@@ -153,8 +155,7 @@ std::vector<Comparison> supersample_comparisons(const SmoothingRuns& study) {
         "[D] predicted from Tables 3 and 4, not printed");
     all.push_back({"pixels recomputed", "%",
                    printed(50 * (paper::kRecomputedLeast + paper::kRecomputedMost), study.scene.label, study.size),
-                   100 * study.recomputed,
-                   "[D] 16-18 %, if Table 4 shows the phase alone"});
+                   100 * study.recomputed, "[D] 16-18 %, if Table 4 shows the phase alone"});
     add("supersampling, mean of all PEs, fitted", paper::kMeanSupersampleMs, study.factor * spa_ms(middle.again.mean),
         "[D] if Table 4 shows the phase alone");
     all.push_back({"factor", "", std::nullopt, study.factor, "Table 2's"});

@@ -27,9 +27,9 @@ PackedJob packed(const Session& session, const Scene& scene, const TorusSettings
     return pack_job(scene, job_settings(settings, scale));
 }
 
-// Of what is to be done, by the less hopeful of two measures: packets that are finished beside those that live, which tells
-// the time while all nodes compute; and how far the packets have dwindled, which tells it in the end, when few of them
-// take as many supersteps. Of both the pixels that nodes have looked at.
+// Of what is to be done, by the less hopeful of two measures: packets that are finished beside those that live, which
+// tells the time while all nodes compute; and how far the packets have dwindled, which tells it in the end, when few of
+// them take as many supersteps. Of both the pixels that nodes have looked at.
 double share_done(const Census& census, std::size_t returns, std::uint64_t most_live) {
     const auto finished = static_cast<double>(returns), live = static_cast<double>(census.live);
     if (live == 0) return census.looked;

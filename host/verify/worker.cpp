@@ -87,7 +87,7 @@ NamedDevices named_devices(const std::string& wanted) {
 }
 
 void run_worker(int lines, const std::string& wanted, std::size_t index, const VerifySettings& settings) {
-    leave_driver_crashes();  // the supervisor tells of them
+    leave_driver_crashes();               // the supervisor tells of them
     ::fcntl(lines, F_SETFD, FD_CLOEXEC);  // not for compilers that the driver starts
     const auto stop = [&](const std::exception& error, const char* kind) {
         send(lines, {{"error", error.what()}, {"kind", kind}});

@@ -76,16 +76,18 @@ TEST_CASE("a machine without OpenCL ends with the remedy", "[cli]") {
 TEST_CASE("a driver that crashes is named with what it did, as a device's failure", "[cli]") {
     if (kSanitized) return;  // which sees crashes first
     const ScratchFolder outputs;
-    check_refused(outputs, render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"}), 3,
-                  {"raya: the OpenCL driver crashed (SIGSEGV) while 'trace': launching kernel", "remedy: POCL_CACHE_DIR=DIR"},
-                  failing_device("clEnqueueNDRangeKernel 1 crash"));
+    check_refused(
+        outputs, render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"}), 3,
+        {"raya: the OpenCL driver crashed (SIGSEGV) while 'trace': launching kernel", "remedy: POCL_CACHE_DIR=DIR"},
+        failing_device("clEnqueueNDRangeKernel 1 crash"));
 }
 
 TEST_CASE("a damaged cache of the driver's ends with a remedy", "[cli]") {
     if (kSanitized) return;
     const ScratchFolder cache, outputs;
     const Surroundings around{.variables = {{"POCL_CACHE_DIR", cache.path()}}};
-    const Words words = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
+    const Words words = {
+        "render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
     REQUIRE(run_raya(words, around).code == 0);
     std::filesystem::remove(outputs / "x.pfm");
     int damaged = 0;
@@ -95,18 +97,22 @@ TEST_CASE("a damaged cache of the driver's ends with a remedy", "[cli]") {
             ++damaged;
         }
     if (damaged == 0) return;  // a driver that keeps nothing
-    check_refused(outputs, words, 3, {"the OpenCL driver crashed (SIGABRT) while building program", "empty folder"}, around);
+    check_refused(outputs, words, 3, {"the OpenCL driver crashed (SIGABRT) while building program", "empty folder"},
+                  around);
 }
 
-TEST_CASE("where PoCL's cache may not be written, the build's failure says so; without any place one is found", "[cli]") {
+TEST_CASE("where PoCL's cache may not be written, the build's failure says so; without any place one is found",
+          "[cli]") {
     const ScratchFolder home, outputs;
     ::chmod(outputs.path().c_str(), 0777);
     ::chmod(home.path().c_str(), 0555);
-    const Words words = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
+    const Words words = {
+        "render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
     check_refused(outputs, words, 3, {"clBuildProgram failed", "The log gives no reason", "POCL_CACHE_DIR"},
                   {.variables = {{"POCL_CACHE_DIR", home.path()}}, .as_nobody = true});
-    const Outcome run = run_raya(words, {.variables = {{"POCL_CACHE_DIR", ""}, {"XDG_CACHE_HOME", ""}, {"HOME", home.path()}},
-                                         .as_nobody = true});
+    const Outcome run = run_raya(
+        words,
+        {.variables = {{"POCL_CACHE_DIR", ""}, {"XDG_CACHE_HOME", ""}, {"HOME", home.path()}}, .as_nobody = true});
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.err, Catch::Contains("raya: warning: ") && Catch::Contains("PoCL keeps its kernels in"));

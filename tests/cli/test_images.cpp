@@ -58,7 +58,8 @@ TEST_CASE("no file says when or where it was made", "[cli]") {
     }
 }
 
-TEST_CASE("a scene too large for the default machine's format is rendered in other units, which are reported", "[cli]") {
+TEST_CASE("a scene too large for the default machine's format is rendered in other units, which are reported",
+          "[cli]") {
     const ScratchFolder folder;
     Scene scene = read_nff(scene_file("mirrors"));
     scene.planes.clear();
@@ -96,8 +97,8 @@ TEST_CASE("what a format cannot hold is warned of, and refused where nothing is 
     const std::string scene = folder / "far.nff";
     const auto render = [&](const std::string& spheres, const std::string& format) {
         write_whole_file(scene, "v\nfrom 0 -1e6 0\nat 0 0 0\nup 0 0 1\nangle 1\nhither 1\nresolution 8 8\n" + spheres);
-        return run_raya({"render", scene, "-o", folder / "x.pfm", "--lanes", "4", "--pes", "8", "--format", format, "--report",
-                         folder / "x.json"});
+        return run_raya({"render", scene, "-o", folder / "x.pfm", "--lanes", "4", "--pes", "8", "--format", format,
+                         "--report", folder / "x.json"});
     };
     const Outcome warned = render("s 0 0 0 1000\ns 9 9 9 1e-5\n", "spa22");
     INFO(warned.told());
@@ -116,9 +117,11 @@ TEST_CASE("what a format cannot hold is warned of, and refused where nothing is 
 TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --strict refused", "[cli]") {
     const ScratchFolder folder;
     const std::string scene = folder / "t.nff";
-    write_whole_file(scene, "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\nla 1 1 1\nla 0 0 0\n"
-                            "p 3\n0 0 0\n0 0 0\n1 1 1\ns 0 0 0 1\n");
-    const Words words = {"render", scene, "-o", folder / "x.pfm", "--lanes", "4", "--pes", "8", "--report", folder / "x.json"};
+    write_whole_file(scene,
+                     "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\nla 1 1 1\nla 0 0 0\n"
+                     "p 3\n0 0 0\n0 0 0\n1 1 1\ns 0 0 0 1\n");
+    const Words words = {"render", scene,   "-o", folder / "x.pfm", "--lanes",
+                         "4",      "--pes", "8",  "--report",       folder / "x.json"};
     const Outcome run = run_raya(words);
     INFO(run.told());
     CHECK(run.code == 0);
@@ -126,13 +129,15 @@ TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --
                          "raya: warning: " + scene + ":10: polygon without area, left out\n");
     const Document report = Document::parse(file_contents(folder / "x.json"));
     REQUIRE(report["skipped"].size() == 2);
-    CHECK(report["skipped"][0] == Document{{"what", "entity 'la' of another dialect, skipped"}, {"count", 2}, {"line", 8}});
+    CHECK(report["skipped"][0] ==
+          Document{{"what", "entity 'la' of another dialect, skipped"}, {"count", 2}, {"line", 8}});
     CHECK(report["warnings"].size() == 2);
     Words strict = words;
     strict.push_back("--strict");
     CHECK(run_raya(strict).code == 2);
-    for (const Words& other : {Words{"bench", scene, "--strict"}, Words{"study", "fig7", scene, "--strict", "-o", folder / "s"},
-                               Words{"study", "formats", scene, "--strict", "-o", folder / "s"}}) {
+    for (const Words& other :
+         {Words{"bench", scene, "--strict"}, Words{"study", "fig7", scene, "--strict", "-o", folder / "s"},
+          Words{"study", "formats", scene, "--strict", "-o", folder / "s"}}) {
         const Outcome refused = run_raya(other);
         INFO(refused.told());
         CHECK(refused.code == 2);
@@ -145,11 +150,11 @@ TEST_CASE("two names of one file are refused, however they are written", "[cli]"
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "d");
     std::filesystem::create_symlink("x.pfm", folder / "link.pfm");
-    for (const auto& [one, other] : {std::pair<std::string, std::string>{"x.pfm", "./x.pfm"},
-                                     {"x.pfm", "d/../x.pfm"},
-                                     {"link.pfm", "x.pfm"}}) {
+    for (const auto& [one, other] :
+         {std::pair<std::string, std::string>{"x.pfm", "./x.pfm"}, {"x.pfm", "d/../x.pfm"}, {"link.pfm", "x.pfm"}}) {
         CAPTURE(one, other);
-        const Outcome run = run_raya({"render", scene_file("planes"), "-o", folder / one, "--report", (folder.path() / other).string()});
+        const Outcome run = run_raya(
+            {"render", scene_file("planes"), "-o", folder / one, "--report", (folder.path() / other).string()});
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Catch::Contains("named twice"));
     }

@@ -1,7 +1,7 @@
 // The name that a user may have meant.
-#include "host/cli/nearest.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "host/cli/nearest.hpp"
 
 namespace raya {
 namespace {

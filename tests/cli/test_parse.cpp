@@ -1,6 +1,4 @@
 // Options as they are written: words, and values by the type that they fill.
-#include "host/cli/parse.hpp"
-
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <optional>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "host/cli/options.hpp"
+#include "host/cli/parse.hpp"
 #include "host/error.hpp"
 
 using namespace raya;
@@ -64,7 +63,9 @@ TEST_CASE("the type of an option's value decides what it takes, not what its hel
     CHECK(complaint(whole, "7").empty());
     CHECK(whole == 7u);
     for (const std::string text : {"-1", "+1", "1.5", "x", "1 "})
-        CHECK_THAT(complaint(whole, text), Equals("--it " + text + (text == "-1" ? ": out of range" : ": not a whole number") + "; --it: A value"));
+        CHECK_THAT(
+            complaint(whole, text),
+            Equals("--it " + text + (text == "-1" ? ": out of range" : ": not a whole number") + "; --it: A value"));
     CHECK_THAT(complaint(whole, "4294967296"), Contains("--it 4294967296: out of range"));
     std::uint64_t plain = 0;
     CHECK_THAT(complaint(plain, "-1"), Contains("out of range"));

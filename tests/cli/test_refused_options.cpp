@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "tests/cli/refusals.hpp"
-#include "tests/thorough.hpp"
 #include "tests/paths.h"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -142,8 +142,10 @@ TEST_CASE("where OpenImageIO does not load, PNG and EXR are refused before anyth
     const Surroundings around{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
     const std::string scene = scene_file("planes");
     for (const std::string image : {outputs / "x.png", outputs / "x.exr"})
-        check_refused(outputs, {"render", scene, "-o", image}, 2, {image, "libOpenImageIO", "name a .pfm file"}, around);
-    const Outcome run = run_raya({"render", scene, "-o", outputs / "x.pfm", "--size", "4", "--pes", "4", "--lanes", "4"}, around);
+        check_refused(outputs, {"render", scene, "-o", image}, 2, {image, "libOpenImageIO", "name a .pfm file"},
+                      around);
+    const Outcome run =
+        run_raya({"render", scene, "-o", outputs / "x.pfm", "--size", "4", "--pes", "4", "--lanes", "4"}, around);
     INFO(run.told());
     CHECK(run.code == 0);
 }

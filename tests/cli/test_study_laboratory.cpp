@@ -72,7 +72,8 @@ TEST_CASE("a study takes a scene of one's own", "[cli]") {
 
 TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind", "[cli]") {
     const ScratchFolder outputs;
-    check_refused(outputs, study("fig6", outputs), 2, {"no command fig6 (did you mean fig7?)", "fig7, fig8", "fig12", "fig13", "all"});
+    check_refused(outputs, study("fig6", outputs), 2,
+                  {"no command fig6 (did you mean fig7?)", "fig7, fig8", "fig12", "fig13", "all"});
     for (const char* size : {"0", "8", "16", "5000"})
         check_refused(outputs, study("fig8", outputs, {"--size", size}), 2,
                       {std::string("--size ") + size + ":", "17..4096"});

@@ -1,12 +1,11 @@
 // Files that are read whole, and everything that is no such file.
-#include "host/files/read_file.hpp"
-
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <thread>
 
+#include "host/files/read_file.hpp"
 #include "tests/files/scratch_folder.hpp"
 
 namespace raya {

@@ -1,4 +1,5 @@
-// Pictures as files hold them, read by OpenImageIO. Library raya_read_image, so that other tests load none of its libraries.
+// Pictures as files hold them, read by OpenImageIO. Library raya_read_image, so that other tests load none of its
+// libraries.
 #pragma once
 #include <filesystem>
 

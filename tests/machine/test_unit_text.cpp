@@ -1,7 +1,7 @@
 // Sizes, times and rates in the unit that fits; sizes never read the same where one does not fit the other.
-#include "host/machine/unit_text.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "host/machine/unit_text.hpp"
 
 namespace raya {
 namespace {

@@ -80,8 +80,10 @@ TEST_CASE("files that are no bench report are refused with a remedy", "[bench]")
         return json.dump();
     };
     CHECK(refusal(folder, good) == "accepted");
-    CHECK_THROWS_WITH(read_bench_report(folder / "none.json"),
-                      Contains("none.json: cannot be read: No such file or directory; remedy: make a baseline with: raya bench --report"));
+    CHECK_THROWS_WITH(
+        read_bench_report(folder / "none.json"),
+        Contains(
+            "none.json: cannot be read: No such file or directory; remedy: make a baseline with: raya bench --report"));
     CHECK_THROWS_WITH(read_bench_report(folder.path()), Contains("it is a folder"));
     CHECK_THAT(refusal(folder, ""), Contains("it is no JSON (at byte 1)"));
     CHECK_THAT(refusal(folder, "kernel,lanes\n"), Contains("it is no JSON (at byte 1)"));

@@ -1,4 +1,5 @@
-// Scenes in other units: times a power of two the image keeps its bits, times a power of ten what rounding leaves of it.
+// Scenes in other units: times a power of two the image keeps its bits, times a power of ten what rounding leaves of
+// it.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>

@@ -1,12 +1,12 @@
-// The power of two that brings a scene into the range of a format: nothing where it lies there, and else into its middle.
-#include "host/scene/length_scale.hpp"
-
+// The power of two that brings a scene into the range of a format: nothing where it lies there, and else into its
+// middle.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
+#include "host/scene/length_scale.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "tests/paths.h"
 #include "tests/scene/scaled_scene.hpp"
@@ -48,7 +48,8 @@ TEST_CASE("the limits of the formats are those of the kernels", "[length_scale]"
     CHECK(smallest_number(kSmall) == std::ldexp(1, -14));
 }
 
-TEST_CASE("a scene inside the range is left alone to its edges, and beyond them comes into the middle", "[length_scale]") {
+TEST_CASE("a scene inside the range is left alone to its edges, and beyond them comes into the middle",
+          "[length_scale]") {
     // e6m15: hits count up to 2^15, so lengths up to 2^13; radii from 2^-15 on, with two powers to spare 2^-13.
     CHECK(length_scale(sphere_seen_from(1, 8192), kSpa22).exponent == 0);
     CHECK(length_scale(sphere_seen_from(1, 8193), kSpa22).exponent == -8);
@@ -99,7 +100,7 @@ TEST_CASE("what a format cannot hold beside the largest length is counted, and a
     const Scene speck = sphere_seen_from(1e-4, 1e6);
     CHECK_THROWS_AS(length_scale(speck, kSpa22), UserError);
     CHECK_THROWS_WITH(length_scale(speck, kSpa22), Contains("one.nff") && Contains("from 0.0001 to 1e+06") &&
-                                                        Contains("e6m15") && Contains("--format fp32"));
+                                                       Contains("e6m15") && Contains("--format fp32"));
     CHECK_NOTHROW(length_scale(speck, kFp32));
 }
 

@@ -1,12 +1,11 @@
 // Files by other people: what is passed over, how that is told, and what is refused all the same.
-#include "host/scene/nff_dialects.hpp"
-
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
 #include <string>
 
 #include "host/error.hpp"
+#include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_reader.hpp"
 
 namespace raya {
@@ -34,15 +33,17 @@ using Told = std::vector<std::string>;
 TEST_CASE("a scene that is NFF alone has no remarks", "[dialects]") { CHECK(pass(kView + kSphere).told.empty()); }
 
 TEST_CASE("facets without area are left out and counted", "[dialects]") {
-    const Passed passed = pass(kView + "p 3\n0 0 0\n1 0 0\n2 0 0\n" + kSphere + "p 3\n0 0 0\n0 0 0\n2 0 0\n" +
-                               "pp 3\n1 1 1 0 0 1\n1 1 1 0 0 1\n1 1 1 0 0 1\np 2\n0 0 0\n1 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
+    const Passed passed =
+        pass(kView + "p 3\n0 0 0\n1 0 0\n2 0 0\n" + kSphere + "p 3\n0 0 0\n0 0 0\n2 0 0\n" +
+             "pp 3\n1 1 1 0 0 1\n1 1 1 0 0 1\n1 1 1 0 0 1\np 2\n0 0 0\n1 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
     CHECK(passed.told == Told{"t.nff:8: polygon without area, left out (4 in all)"});
     CHECK(passed.scene.polygons.size() == 1);
     CHECK(passed.scene.spheres.size() == 1);
 }
 
 TEST_CASE("a checker before a facet that is left out goes with it", "[dialects]") {
-    const Passed passed = pass(kView + "#raya checker 1 1 1 0 0 0 1\np 3\n0 0 0\n1 0 0\n2 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
+    const Passed passed =
+        pass(kView + "#raya checker 1 1 1 0 0 0 1\np 3\n0 0 0\n1 0 0\n2 0 0\np 3\n0 0 0\n1 0 0\n0 1 0\n");
     REQUIRE(passed.scene.polygons.size() == 1);
     CHECK_FALSE(passed.scene.surfaces[0].checker);
 }
@@ -74,43 +75,51 @@ TEST_CASE("objects without size and normals without length are passed over", "[d
 }
 
 TEST_CASE("entities of other dialects are skipped with the numbers that follow them", "[dialects]") {
-    const Passed passed = pass("number 3\n" + kView + "la 0.2 0.2 0.2\n" + kSphere +
-                               "lf 0 0 0\n1 1 1\n 0.5\ntt wood.ppm 1 2 3\n0 0 0 0 0\n1 0 0 1 0\nQ\nla 0.1 0.1 0.1  # again\n" +
-                               "texture marble.tga\n" + kSphere);
-    CHECK(passed.told ==
-          Told{"t.nff:1: entity 'number' of another dialect, skipped", "t.nff:9: entity 'la' of another dialect, skipped (2 in all)",
-               "t.nff:11: entity 'lf' of another dialect, skipped", "t.nff:14: entity 'tt' of another dialect, skipped",
-               "t.nff:17: entity 'Q' of another dialect, skipped", "t.nff:19: entity 'texture' of another dialect, skipped"});
+    const Passed passed =
+        pass("number 3\n" + kView + "la 0.2 0.2 0.2\n" + kSphere +
+             "lf 0 0 0\n1 1 1\n 0.5\ntt wood.ppm 1 2 3\n0 0 0 0 0\n1 0 0 1 0\nQ\nla 0.1 0.1 0.1  # again\n" +
+             "texture marble.tga\n" + kSphere);
+    CHECK(passed.told == Told{"t.nff:1: entity 'number' of another dialect, skipped",
+                              "t.nff:9: entity 'la' of another dialect, skipped (2 in all)",
+                              "t.nff:11: entity 'lf' of another dialect, skipped",
+                              "t.nff:14: entity 'tt' of another dialect, skipped",
+                              "t.nff:17: entity 'Q' of another dialect, skipped",
+                              "t.nff:19: entity 'texture' of another dialect, skipped"});
     CHECK(passed.scene.spheres.size() == 2);
 }
 
 TEST_CASE("a mail header before the scene is skipped, and lines are counted from the file's first", "[dialects]") {
-    const std::string header = "From eye@world Thu Dec 10\nSubject: a teapot, at last: see below\nX-Mailer: none\n\tand more\n\n";
+    const std::string header =
+        "From eye@world Thu Dec 10\nSubject: a teapot, at last: see below\nX-Mailer: none\n\tand more\n\n";
     for (const std::string end : {"\n", "\r\n"}) {
         std::string text = header + "# a comment\n" + kView + "s 0 0 0 0\n" + kSphere;
-        for (std::size_t at = 0; end.size() > 1 && (at = text.find('\n', at)) != text.npos; at += 2) text.replace(at, 1, end);
-        CHECK(pass(text).told == Told{"t.nff:1: mail header before the scene, skipped", "t.nff:14: sphere of radius 0, left out"});
+        for (std::size_t at = 0; end.size() > 1 && (at = text.find('\n', at)) != text.npos; at += 2)
+            text.replace(at, 1, end);
+        CHECK(pass(text).told ==
+              Told{"t.nff:1: mail header before the scene, skipped", "t.nff:14: sphere of radius 0, left out"});
     }
     CHECK_THROWS_WITH(pass(header + kView), Contains("t.nff:13: no object"));
     CHECK_THROWS_WITH(parse_nff(header + kView + kSphere, "t.nff"), Contains("t.nff:1: unknown entity 'From'"));
 }
 
 TEST_CASE("what is no NFF at all is refused, and so is what leaves no scene", "[dialects]") {
-    for (const std::string line : {"This is a story of a teapot.", "hello world", "solid teapot", "outer loop", "<html>", "{ 1 2 }",
-                                   "verylongword 1 2 3", "a b c d 1", "int main() { return 0; }"}) {
+    for (const std::string line :
+         {"This is a story of a teapot.", "hello world", "solid teapot", "outer loop", "<html>", "{ 1 2 }",
+          "verylongword 1 2 3", "a b c d 1", "int main() { return 0; }"}) {
         CAPTURE(line);
         CHECK_THROWS_WITH(pass(kView + line + "\n" + kSphere), Contains("t.nff:8: unknown entity"));
     }
     CHECK_THROWS_WITH(pass("la 1 1 1\n" + kSphere), Contains("no 'v'"));
     CHECK_THROWS_WITH(pass(kView + "tt wood.ppm\n0 0 0\n"), Contains("no object"));
-    CHECK_THROWS_WITH(pass(kView + "s 0 0 0\n"), Contains("file ends"));       // NFF's own entities are held to NFF
+    CHECK_THROWS_WITH(pass(kView + "s 0 0 0\n"), Contains("file ends"));  // NFF's own entities are held to NFF
     CHECK_THROWS_WITH(pass(kView + "s 0 0 0 1 2\n"), Contains("follows the end"));
     CHECK_THROWS_WITH(pass(kView + kView + kSphere), Contains("second 'v'"));
 }
 
 TEST_CASE("without a place for remarks all of it is refused", "[dialects]") {
-    for (const std::string entity : {"p 3\n0 0 0\n1 0 0\n2 0 0\n", "p 4\n0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n", "s 1 1 1 0\n", "la 1 1 1\n",
-                                     "Q\n", "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n", "p 2\n0 0 0\n1 0 0\n"}) {
+    for (const std::string entity :
+         {"p 3\n0 0 0\n1 0 0\n2 0 0\n", "p 4\n0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n", "s 1 1 1 0\n", "la 1 1 1\n", "Q\n",
+          "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n", "p 2\n0 0 0\n1 0 0\n"}) {
         CAPTURE(entity);
         CHECK_THROWS_AS(parse_nff(kView + entity + kSphere, "t.nff"), UserError);
         CHECK_NOTHROW(pass(kView + entity + kSphere));

@@ -75,7 +75,8 @@ TEST_CASE("fig9 says how ours lies to the paper's 229 times", "[study]") {
 }
 
 TEST_CASE("beside a scene of one's own, or another size, stand no figures of the paper", "[study]") {
-    for (const StudyPage& page : {speedup_page("folder/centre.nff", even_costs(256)), speedup_page("centre", even_costs(64))}) {
+    for (const StudyPage& page :
+         {speedup_page("folder/centre.nff", even_costs(256)), speedup_page("centre", even_costs(64))}) {
         for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);
         for (const StudyPlot& plot : page.plots)
             for (const PlotSeries& series : plot.series) CHECK(series.style != PlotStyle::kPaper);

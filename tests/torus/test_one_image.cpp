@@ -6,9 +6,9 @@
 #include <map>
 
 #include "host/torus/standstill.hpp"
+#include "tests/scene/scaled_scene.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"
-#include "tests/scene/scaled_scene.hpp"
 #include "tests/torus/render_torus.hpp"
 
 namespace raya {
