@@ -39,8 +39,7 @@ extern "C" void explain(int signal) {
     tell(
         "; what it said stands above; remedy: POCL_CACHE_DIR=DIR with an empty folder in place of a cache that may be "
         "damaged, more memory (ulimit -v), a /sys that is mounted, another driver (raya devices), and raya verify, "
-        "which "
-        "says what a driver does wrong\n");
+        "which says what a driver does wrong\n");
     ::_exit(kExitDeviceError);
 }
 

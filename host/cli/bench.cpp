@@ -150,8 +150,7 @@ void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
         if (parsed.count(option) > 0)
             throw UserError(
                 fmt::format("{} with --ways torus: the torus has 4x4x4 nodes without a memory limit, whose voxels are "
-                            "no mapping of "
-                            "pixels; leave it out, or add the way none",
+                            "no mapping of pixels; leave it out, or add the way none",
                             option));
 }
 

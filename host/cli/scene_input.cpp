@@ -48,8 +48,7 @@ void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const Nu
     if (scale.vanishing == 0) return;
     warnings.add(
         fmt::format("{}: {} spheres, cones or checkers are not seen: they are smaller than {:.3g}, the least that {} "
-                    "holds beside a "
-                    "length of {:.3g}; remedy: --format fp32",
+                    "holds beside a length of {:.3g}; remedy: --format fp32",
                     scene.name, scale.vanishing, scale.least, format_name(format), scale.largest));
 }
 

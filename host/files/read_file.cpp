@@ -34,7 +34,8 @@ std::string read_file(const std::filesystem::path& path, Pipes pipes, std::uint6
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
     if (file.number < 0) refuse(errno);
     constexpr std::size_t kBlock = 1 << 16;
-    std::string bytes(static_cast<std::size_t>(status.st_size), '\0');  // as large as it says, which may be wrong
+    const auto told = static_cast<std::uint64_t>(status.st_size);  // which may be wrong
+    std::string bytes(static_cast<std::size_t>(std::min(told, most)), '\0');
     for (std::size_t end = 0;;) {
         if (end > most) throw UnreadableFile(fmt::format("it has more than {} bytes", most));
         if (end == bytes.size()) bytes.resize(end + std::max(end, kBlock));

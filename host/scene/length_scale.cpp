@@ -54,8 +54,8 @@ int exponent_for(const Room& room) {
 [[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {
     throw UserError(
         fmt::format("{}: its lengths, from {:.3g} to {:.3g}, are too far apart for {}: where the largest fits, nothing "
-                    "below {:.3g} "
-                    "can be seen, and that is every object; remedy: --format fp32, or bring nearer what is so far off",
+                    "below {:.3g} can be seen, and that is every object; remedy: --format fp32, or bring nearer what "
+                    "is so far off",
                     scene.name, scale.smallest, scale.largest, format_name(format), scale.least));
 }
 
