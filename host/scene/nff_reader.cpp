@@ -217,7 +217,9 @@ class NffReader {
 
     void add_polygon(Polygon polygon) {
         const OutlineVerdict verdict = tidy_outline(polygon);
-        if (verdict.fault == OutlineFault::kNoArea)
+        // A triangle is flat but for rounding: one that is not has no area to speak of, and nothing to cut.
+        const bool is_sliver = verdict.fault == OutlineFault::kNotFlat && polygon.vertices.size() == 3;
+        if (verdict.fault == OutlineFault::kNoArea || (remarks_ && is_sliver))
             return pass_over("the polygon " + verdict.reason, "polygon without area, left out");
         if (verdict.fault == OutlineFault::kNone) {
             scene_.polygons.push_back(std::move(polygon));
@@ -231,7 +233,7 @@ class NffReader {
                 if (!polygon.normals.empty())
                     triangle.normals.push_back(polygon.normals[static_cast<std::size_t>(corner)]);
             }
-            add_polygon(std::move(triangle));  // which is flat
+            add_polygon(std::move(triangle));
         }
     }
 

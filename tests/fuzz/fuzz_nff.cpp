@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "host/error.hpp"
 #include "host/scene/nff_reader.hpp"
@@ -46,10 +47,26 @@ void check_triangles(const Polygon& polygon) {
             complain("a wrong triangle", std::to_string(a));
 }
 
+/// What is left of a file in which something was passed over is NFF, and a file that is NFF has nothing of the kind.
+void check_leniently(std::string_view text) {
+    std::vector<NffRemark> remarks;
+    const Scene scene = parse_nff(text, "fuzz.nff", &remarks);
+    const std::string written = write_nff(scene);
+    if (!(parse_nff(written, "fuzz.nff") == scene)) complain("changed by being written and read", written);
+    for (const NffRemark& remark : remarks)
+        if (remark.count == 0 || remark.line < 1) complain("a remark without count or line", remark.what);
+    if (remarks.empty() && !(parse_nff(text, "fuzz.nff") == scene)) complain("passed over without a remark", text);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
+    try {
+        check_leniently(text);
+    } catch (const UserError& error) {
+        check_message(error.what());
+    }
     try {
         const Scene scene = parse_nff(text, "fuzz.nff");
         const std::string written = write_nff(scene);
