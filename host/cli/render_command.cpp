@@ -54,7 +54,7 @@ void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& dev
         const DevicePeak peak =
             watch.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
-        constexpr double kMuch = 0.15;  // idle machines stay below a tenth
+        constexpr double kMuch = 0.15;  // of the best
         if (peak.scatter > kMuch)
             warnings.add(
                 fmt::format("the device's peak, measured three times, scatters by {:.0f} %: something else runs on it, "
