@@ -111,7 +111,7 @@ TEST_CASE("a render ends with a short summary", "[cli]") {
     CHECK(files.run().err.empty());
     CHECK(std::count(out.begin(), out.end(), '\n') <= 8);
     for (const char* text : {"20 x 12 pixels on spa (20 PEs, cyclic mapping, offset 16), e6m15, 8 bounces",
-                             "240 primary", "u = ", "efficiency", "in each PE of 32 KB", "Mrays/s", "(4 lanes)"})
+                             "240 primary", "u = ", "efficiency", "in each PE of 32 KB", "rays/s on ", "(4 lanes)"})
         CHECK_THAT(out, Catch::Contains(text));
     CHECK_THAT(out, Catch::Contains(report["image"]["hash"].get<std::string>()));
     CHECK_THAT(out, Catch::Contains(std::to_string(report["rays"]["shadow"].get<int>()) + " shadow"));
