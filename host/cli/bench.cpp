@@ -68,7 +68,9 @@ void print_operations(Session& session, const std::vector<NumberFormat>& formats
     table[0].insert(table[0].end(), kOperations.begin(), kOperations.end());
     std::array<double, kOperations.size()> first{};
     for (const NumberFormat& format : formats) {
-        const auto rates = operation_rates(session, format, lanes, samples);
+        OperationRates operations(session, format, lanes);
+        std::array<double, kOperations.size()> rates{};
+        for (std::size_t kind = 0; kind < rates.size(); ++kind) rates[kind] = operations.measure(kind, samples);
         if (table.size() == 1) first = rates;
         table.push_back({format_name(format), std::to_string(lanes)});
         for (std::size_t i = 0; i < rates.size(); ++i)

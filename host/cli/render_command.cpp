@@ -60,7 +60,6 @@ void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& dev
                 fmt::format("the device's peak, measured three times, scatters by {:.0f} %: something else runs on it, "
                             "and shares of the peak say little",
                             100 * peak.scatter));
-        report.warnings = warnings.texts();
     } catch (const DeviceError& error) {  // the render's own figures stand
         report.measured.roofline.emplace().lacking = error.what();
     }

@@ -33,7 +33,6 @@ RenderReport begin_report(const RenderCommand& command, const SceneInput& input,
                           const Result& result) {
     RenderReport report;
     report.scene = command.render.scene;
-    report.warnings = input.warnings.texts();
     report.skipped = input.remarks;
     report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
     report.device = {device.name,          device.platform, device.version,

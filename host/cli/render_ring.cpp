@@ -102,10 +102,12 @@ void render_on_ring(const RenderCommand& command) {
 
     RenderReport report = make_report(command, input, settings, session.device(), result);
     watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
-    bar->stage("measuring the device's peak");
-    if (command.profile)
+    if (command.profile) {
+        bar->stage("measuring the device's peak");
         add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result), input.warnings);
+    }
     bar.reset();
+    report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
 }

@@ -117,10 +117,12 @@ void render_on_torus(const RenderCommand& command) {
         write_image(command.image, result.image, image_attributes(report, scene.name));
         if (packets) write_whole_file(command.torus.packets, packets->finish());
     });
-    bar->stage("measuring the device's peak");
-    if (command.profile)
+    if (command.profile) {
+        bar->stage("measuring the device's peak");
         add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result), input.warnings);
+    }
     bar.reset();
+    report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
     watch.write(session, [&](TraceFile& file) { trace->add_to(file, result, command.trace.pes); });
 }

@@ -10,6 +10,16 @@
 
 namespace raya {
 
+std::string progress_line(const std::string& what, std::optional<double> done, double seconds) {
+    constexpr int kWidth = 40;
+    constexpr double kEnough = 0.001;  // of the work: from less nothing can be said of the rest
+    const double share = done.value_or(0);
+    if (share < kEnough) return fmt::format("{} ... {:.0f} s", what, seconds);
+    const int filled = static_cast<int>(share * kWidth);
+    return fmt::format("[{}{}] {:3.0f} %  {:.0f} s left", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+                       std::min(99.0, std::floor(100 * share)), seconds * (1 - share) / share);
+}
+
 ProgressBar::ProgressBar(bool wanted, const std::string& what) : what_(what) {
     if (wanted && ::isatty(STDERR_FILENO) != 0) drawer_ = std::thread([this] { draw_until_ended(); });
 }
@@ -40,18 +50,8 @@ void ProgressBar::draw_until_ended() {
     using namespace std::chrono_literals;
     std::unique_lock lock(mutex_);
     for (auto pause = 1000ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
-        show_status(line(Clock::now()));
+        show_status(progress_line(what_, done_, std::chrono::duration<double>(Clock::now() - stage_began_).count()));
     clear_status();
-}
-
-std::string ProgressBar::line(Clock::time_point now) const {
-    constexpr int kWidth = 40;
-    constexpr double kEnough = 0.001;  // of the work: from less nothing can be said of the rest
-    const double elapsed = std::chrono::duration<double>(now - stage_began_).count();
-    if (done_.value_or(0) < kEnough) return fmt::format("{} ... {:.0f} s", what_, elapsed);
-    const int filled = static_cast<int>(*done_ * kWidth);
-    return fmt::format("[{}{}] {:3.0f} %  {:.0f} s left", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-                       std::min(99.0, std::floor(100 * *done_)), elapsed * (1 - *done_) / *done_);
 }
 
 }  // namespace raya

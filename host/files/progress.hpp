@@ -13,6 +13,9 @@ namespace raya {
 /// Called now and then with the share of the work that is done, 0..1.
 using ProgressCallback = std::function<void(double)>;
 
+/// What is drawn of `what` that began `seconds` ago, of which a share is done where that is known.
+std::string progress_line(const std::string& what, std::optional<double> done, double seconds);
+
 /// Draws on stderr, only if that is a terminal: from one second on, five times a second, whatever the command is about.
 /// What runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of
 /// scope; who prints before that clears it (say.hpp).
@@ -35,7 +38,6 @@ class ProgressBar {
   private:
     using Clock = std::chrono::steady_clock;
     void draw_until_ended();
-    std::string line(Clock::time_point now) const;
 
     std::mutex mutex_;  // of all below
     std::condition_variable end_;

@@ -27,6 +27,4 @@ std::uint8_t srgb_code(float linear) {
     return static_cast<std::uint8_t>(border - borders.begin());
 }
 
-float linear_from_srgb_code(std::uint8_t code) { return static_cast<float>(linear_from_srgb(code / 255.0)); }
-
 }  // namespace raya

@@ -9,7 +9,4 @@ namespace raya {
 /// more than 10^-11 of itself away, the C library's pow is right to about 10^-16).
 std::uint8_t srgb_code(float linear);
 
-/// The linear value in 0..1 that `code` stands for.
-float linear_from_srgb_code(std::uint8_t code);
-
 }  // namespace raya

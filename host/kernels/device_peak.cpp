@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "host/cl/commands.hpp"
 #include "host/kernels/kernel_options.hpp"
@@ -30,21 +31,32 @@ double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
     return least_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(least_ns) : 0;
 }
 
-DevicePeak peak_once(Session& session, const NumberFormat& format, std::uint32_t lanes) {
-    const NumberFormat fp32{};
-    const std::uint32_t widest = default_lanes(session.device());
-    const auto rates = operation_rates(session, format, lanes, kSamples);
-    DevicePeak peak;
-    peak.multiply_per_s = rates[kMultiplyAdd];
-    peak.fp32_per_s = format == fp32 && lanes == widest
-                          ? peak.multiply_per_s
-                          : operation_rates(session, fp32, widest, kSamples)[kMultiplyAdd];
-    peak.divide_per_s = rates[kDivide];
-    peak.root_per_s = rates[kRoot];
-    peak.copy_bytes = copied_bytes(session.device());
-    peak.copy_bytes_per_s = copy_bytes_per_s(session, peak.copy_bytes);
-    return peak;
-}
+// The programs of a device, built once.
+class Peak {
+  public:
+    Peak(Session& session, const NumberFormat& format, std::uint32_t lanes)
+        : session_(session), of_render_(session, format, lanes) {
+        const NumberFormat fp32{};
+        const std::uint32_t widest = default_lanes(session.device());
+        if (format != fp32 || lanes != widest) widest_.emplace(session, fp32, widest);
+    }
+
+    DevicePeak once() {
+        DevicePeak peak;
+        peak.multiply_per_s = of_render_.measure(kMultiplyAdd, kSamples);
+        peak.fp32_per_s = widest_ ? widest_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
+        peak.divide_per_s = of_render_.measure(kDivide, kSamples);
+        peak.root_per_s = of_render_.measure(kRoot, kSamples);
+        peak.copy_bytes = copied_bytes(session_.device());
+        peak.copy_bytes_per_s = copy_bytes_per_s(session_, peak.copy_bytes);
+        return peak;
+    }
+
+  private:
+    Session& session_;
+    OperationRates of_render_;
+    std::optional<OperationRates> widest_;  // where that is another program
+};
 
 }  // namespace
 
@@ -53,9 +65,10 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
     Session session(device);
     DevicePeak best;
     if (session.profile().timed()) {
+        Peak peaks(session, format, lanes);
         double least = std::numeric_limits<double>::infinity();
         for (int i = 0; i < kTimes; ++i) {
-            const DevicePeak peak = peak_once(session, format, lanes);
+            const DevicePeak peak = peaks.once();
             least = std::min(least, peak.fp32_per_s);
             for (double DevicePeak::*rate :
                  {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,

@@ -20,6 +20,12 @@ std::string present_text(std::uint64_t bytes) {
     return bytes % kKb == 0 ? fmt::format("{} KB", bytes / kKb) : tenths_text(10 * bytes / kKb);
 }
 
+std::string data_text(double bytes) {
+    if (bytes < 1e4) return fmt::format("{:.0f} bytes", bytes);
+    if (bytes < 1e6) return fmt::format("{:.1f} KB", bytes / kKb);
+    return fmt::format("{:.1f} MB", bytes / (kKb * kKb));
+}
+
 std::string time_text(double ms) {
     constexpr double kS = 1e3, kMin = 60 * kS, kHour = 60 * kMin;
     if (ms < 10 * kS) return fmt::format("{:.1f} ms", ms);

@@ -10,6 +10,9 @@ namespace raya {
 std::string needed_text(std::uint64_t bytes);
 std::string present_text(std::uint64_t bytes);
 
+/// An amount of data that is not held against a limit: "12 bytes", from 10,000 on "12.3 KB", from a million "12.3 MB".
+std::string data_text(double bytes);
+
 /// "12.3 ms", from ten seconds on "12.3 s", from ten minutes on "12.3 min", from ten hours on "12.3 h".
 std::string time_text(double ms);
 

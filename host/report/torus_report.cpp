@@ -24,12 +24,6 @@ constexpr std::array<Kind, RAYA_KINDS - 1> kKinds = {{{RAYA_KIND_PRIMARY, "prima
 
 std::string sides(const std::array<std::uint32_t, 3>& s) { return fmt::format("{}x{}x{}", s[0], s[1], s[2]); }
 
-std::string bytes_text(double bytes) {
-    if (bytes < 1e4) return fmt::format("{:.0f} bytes", bytes);
-    if (bytes < 1e6) return fmt::format("{:.1f} KB", bytes / 1024);
-    return fmt::format("{:.1f} MB", bytes / (1024 * 1024));
-}
-
 }  // namespace
 
 Json torus_json(const TorusReport& t) {
@@ -86,8 +80,8 @@ std::string torus_lines(const TorusReport& t) {
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : " + ", t.made[kind.number], kind.name);
     std::string text = fmt::format("packets {} = {}; {} supersteps\n", made, kinds, t.supersteps);
     text += fmt::format("links   {} packets over {} links, {} in all; {} over one on average, {} over the busiest\n",
-                        t.hops, t.link.count, bytes_text(static_cast<double>(t.link.total_bytes)),
-                        bytes_text(t.link.mean_bytes()), bytes_text(static_cast<double>(t.link.max_bytes)));
+                        t.hops, t.link.count, data_text(static_cast<double>(t.link.total_bytes)),
+                        data_text(t.link.mean_bytes()), data_text(static_cast<double>(t.link.max_bytes)));
     const TorusTime& m = t.modelled;
     return text + fmt::format(
                       "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step "

@@ -35,20 +35,20 @@ double largest_length(const Scene& scene) {
 
 /// Room between a scene at scale 1 and the limits of a format, in powers of two; negative: it is beyond them.
 struct Room {
-    double above, below, horizon;
+    double above, below;
 };
 
-Room room_of(const LengthScale& scale, bool has_planes, const NumberFormat& format) {
+Room room_of(const LengthScale& scale, const NumberFormat& format) {
     const double smallest = smallest_number(format);
     return {std::log2(farthest_hit(format) / (4 * scale.largest)),
             std::min(std::log2(scale.smallest / std::sqrt(smallest)),
-                     std::log2(std::ldexp(scale.largest, -format.fraction_bits - 1) / smallest)),
-            has_planes ? kHorizon : 0};
+                     std::log2(std::ldexp(scale.largest, -format.fraction_bits - 1) / smallest))};
 }
 
-int exponent_for(const Room& room) {
+int exponent_for(const Room& room, bool has_planes) {
     if (room.above >= 0 && room.below >= kSpare) return 0;
-    return static_cast<int>(std::floor(std::min((room.above - room.below + 1) / 2, room.above - room.horizon)));
+    return static_cast<int>(
+        std::floor(std::min((room.above - room.below + 1) / 2, room.above - (has_planes ? kHorizon : 0))));
 }
 
 [[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {
@@ -70,7 +70,7 @@ LengthScale length_scale(const Scene& scene, const NumberFormat& format) {
         scale.smallest = std::min(scale.smallest, length);
         ++lengths;
     });
-    scale.exponent = exponent_for(room_of(scale, !scene.planes.empty(), format));
+    scale.exponent = exponent_for(room_of(scale, format), !scene.planes.empty());
     scale.least = std::ldexp(std::sqrt(smallest_number(format)), -scale.exponent);
     for_each_small_length(scene, [&](double length) { scale.vanishing += length < scale.least; });
     const bool has_others = !scene.polygons.empty() || !scene.planes.empty();

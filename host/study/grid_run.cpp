@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-#include "host/machine/budget.hpp"
 #include "host/machine/machine.hpp"
 #include "host/machine/t805.hpp"
 #include "host/ring/ring_renderer.hpp"
-#include "host/scene/packer.hpp"
 #include "host/study/arrays.hpp"
 #include "host/torus/topology.hpp"
 

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "host/machine/t805.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
@@ -148,8 +149,7 @@ std::string best_text(const Rows& rows, double Row::*time, double (Row::*speedup
 
 std::string memory_text(const Rows& rows, const Memory& memory) {
     const Rows fit = where(rows, [&](const Row& row) { return row.fits(memory); });
-    if (fit.empty())
-        return fmt::format("no G, one group needs {:.1f} KB a node", static_cast<double>(rows[0].least_bytes) / 1024);
+    if (fit.empty()) return fmt::format("no G, one group needs {} a node", needed_text(rows[0].least_bytes));
     if (fit.size() == rows.size()) return "any G";
     const Row& best = least(fit, &Row::overlapped_ms);
     return fmt::format("G = {}, the best of them {}, speed-up {:.1f}", joined(fit, ", ", &Row::groups), best.groups,

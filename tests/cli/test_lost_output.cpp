@@ -14,12 +14,12 @@ int code_of(const std::string& arguments, const std::string& redirections) {
 }
 
 TEST_CASE("a line that is lost on stdout is exit code 2", "[cli]") {
-    for (const char* arguments : {"--version", "--help", "devices", "verify --only 'machine words' --lanes 4"})
-        for (const char* lost : {">/dev/full", ">&-"}) {
-            CAPTURE(arguments, lost);
-            CHECK(code_of(arguments, std::string(lost) + " 2>/dev/null") == 2);
-        }
-    CHECK(code_of("--version", ">/dev/null") == 0);
+    for (const char* arguments : {"--version", "--help", "devices", "verify --only 'machine bus' --lanes 4"}) {
+        CAPTURE(arguments);
+        CHECK(code_of(arguments, ">/dev/null 2>/dev/null") == 0);
+        CHECK(code_of(arguments, ">/dev/full 2>/dev/null") == 2);
+        CHECK(code_of(arguments, ">&- 2>/dev/null") == 2);
+    }
     const ScratchFolder folder;
     const std::string told = folder / "told";
     CHECK(code_of("devices", ">/dev/full 2>" + told) == 2);

@@ -35,7 +35,7 @@ End in_a_process(const Work& work) {
     if (child == 0) {
         ::dup2(ends[1], STDERR_FILENO);
         // Catch's own handlers end here; what a signal does by itself is what a program finds.
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_DFL);
         work();
         ::_exit(99);
     }
@@ -87,7 +87,7 @@ TEST_CASE("without the handler the half-written file would stay: the test above 
 }
 
 TEST_CASE("each signal ends the process as it would by itself", "[interruption]") {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         CAPTURE(signal);
         const End end = in_a_process([&] {
             end_cleanly_when_interrupted();

@@ -3,10 +3,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
-
-#include "host/image/srgb.hpp"
 
 namespace raya {
 namespace {
@@ -37,6 +36,11 @@ std::vector<float> read_floats(const std::filesystem::path& path, int channels, 
 }
 
 }  // namespace
+
+float linear_from_srgb_code(std::uint8_t code) {
+    const double encoded = code / 255.0;
+    return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+}
 
 Image read_image(const std::filesystem::path& path) {
     Image image;

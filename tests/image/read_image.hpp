@@ -1,6 +1,7 @@
 // Pictures as files hold them, read by OpenImageIO. Library raya_read_image, so that other tests load none of its
 // libraries.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 
 #include "host/image/image.hpp"
@@ -11,5 +12,8 @@ namespace raya {
 /// has not three channels, or one.
 Image read_image(const std::filesystem::path& path);
 GreyImage read_grey_image(const std::filesystem::path& path);
+
+/// The linear value in 0..1 that a code of a PNG stands for.
+float linear_from_srgb_code(std::uint8_t code);
 
 }  // namespace raya

@@ -20,6 +20,13 @@ TEST_CASE("sizes are bytes below 1 KB, else KB, rounded up where needed and down
         CHECK(std::stod(needed_text(bytes + 1)) > std::stod(present_text(bytes)));
 }
 
+TEST_CASE("amounts of data have a unit that fits", "[unit_text]") {
+    CHECK(data_text(9'999) == "9999 bytes");
+    CHECK(data_text(12'800) == "12.5 KB");
+    CHECK(data_text(1.5 * 1024 * 1024) == "1.5 MB");
+    CHECK(data_text(3e9) == "2861.0 MB");
+}
+
 TEST_CASE("times and rates have a unit that fits", "[unit_text]") {
     CHECK(time_text(0.25) == "0.2 ms");
     CHECK(time_text(9'999) == "9999.0 ms");
