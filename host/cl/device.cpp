@@ -126,7 +126,8 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
         throw DeviceError(
             "no OpenCL device found; remedy: install a driver (Debian: apt install pocl-opencl-icd), look at the "
             "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists; PoCL shows none where "
-            "it may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME)");
+            "it may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME), and under a limit of memory "
+            "(ulimit -v)");
     }
     if (wanted.empty()) return default_index(devices);
     const std::optional<std::size_t> number = as_index(wanted);

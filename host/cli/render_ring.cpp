@@ -74,7 +74,7 @@ GreyImage grey(const CostImage& cost) {
 
 void write_images(const RenderCommand& command, const RingResult& result, const ImageAttributes& attributes) {
     write_image(command.image, result.image, attributes);
-    if (!command.cost.empty()) write_image(command.cost, grey(result.all.cost), attributes);
+    if (!command.cost.empty()) write_image(command.cost, grey(result.cost()), attributes);
     if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
 }
 
@@ -86,7 +86,8 @@ void render_on_ring(const RenderCommand& command) {
     SceneInput input =
         watch.steps().during("read scene", [&] { return read_scene(command.render.scene, command.render.strict); });
     const Scene& scene = input.scene;
-    const RingSettings settings = ring_settings(command.render, scene);
+    RingSettings settings = ring_settings(command.render, scene);
+    settings.keep_costs = !command.cost.empty();
     warn_of_slow_search(scene, settings.accel.grid, input.warnings);
     bar->stage("preparing");
     const cl::Device device =

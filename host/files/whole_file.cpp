@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "host/error.hpp"
 #include "host/files/interruption.hpp"
@@ -99,15 +100,18 @@ Target checked_target(const fs::path& path) {
     return {folder / file.filename(), false};
 }
 
-/// Writes all bytes to the descriptor and closes it. Returns 0 or the errno of what failed.
-int write_and_close(int descriptor, std::string_view bytes) {
+using Next = std::function<std::string_view()>;
+
+/// Writes all pieces to the descriptor and closes it. Returns 0 or the errno of what failed.
+int write_and_close(int descriptor, const Next& next) {
     int error = 0;
-    while (!bytes.empty() && error == 0) {
+    for (std::string_view bytes = next(); !bytes.empty() && error == 0;) {
         const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
         if (written >= 0)
             bytes.remove_prefix(static_cast<std::size_t>(written));
         else if (errno != EINTR)
             error = errno;
+        if (bytes.empty()) bytes = next();
     }
     if (::close(descriptor) != 0 && error == 0) error = errno;  // network file systems report a full disk only here
     return error;
@@ -136,10 +140,10 @@ std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::
     }
 }
 
-void write_direct(const fs::path& path, std::string_view bytes) {
+void write_direct(const fs::path& path, const Next& next) {
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) refuse(path, errno);
-    if (const int error = write_and_close(descriptor, bytes)) refuse(path, error);
+    if (const int error = write_and_close(descriptor, next)) refuse(path, error);
 }
 
 }  // namespace
@@ -149,10 +153,14 @@ void check_writable(const fs::path& path) { checked_target(path); }
 fs::path written_file(const fs::path& path) { return checked_target(path).file; }
 
 void write_whole_file(const fs::path& path, std::string_view bytes) {
+    write_whole_file(path, [left = bytes]() mutable { return std::exchange(left, {}); });
+}
+
+void write_whole_file(const fs::path& path, const std::function<std::string_view()>& next) {
     const Target target = checked_target(path);
-    if (target.direct) return write_direct(path, bytes);
+    if (target.direct) return write_direct(path, next);
     const auto temporary = open_temporary(target.file, path);
-    int error = write_and_close(temporary->descriptor, bytes);
+    int error = write_and_close(temporary->descriptor, next);
     if (error == 0 && std::rename(temporary->path.c_str(), target.file.c_str()) != 0) error = errno;
     if (error == 0) return;
     ::unlink(temporary->path.c_str());

@@ -1,6 +1,7 @@
 // Output files that appear whole or not at all.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 namespace raya {
@@ -21,5 +22,9 @@ std::filesystem::path written_file(const std::filesystem::path& path);
 /// (`/dev/stdout`) is written directly, as there is nothing to rename. Throws UserError with file, reason and remedy,
 /// and then leaves nothing behind; nor does an interruption (interruption.hpp).
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// The same for a file whose bytes come in pieces, so that it need not lie in memory as a whole: `next` gives one after
+/// another, each good until the next is asked for, and an empty one at the end.
+void write_whole_file(const std::filesystem::path& path, const std::function<std::string_view()>& next);
 
 }  // namespace raya

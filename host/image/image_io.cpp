@@ -79,7 +79,8 @@ void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttribu
     if (extension == ".png") return write_whole_file(path, encode_png(path, pixels, attributes));
     if (extension == ".exr")
         return write_whole_file(path, encode(path, "exr", pixels, pixels.values.data(), attributes));
-    write_whole_file(path, encode_pfm(pixels.width, pixels.height, pixels.channels, pixels.values));
+    PfmPieces pieces(pixels.width, pixels.height, pixels.channels, pixels.values);
+    write_whole_file(path, [&] { return pieces.next(); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 namespace raya {
 namespace {
@@ -15,13 +16,18 @@ void append_little_endian(std::string& bytes, float value) {
 
 }  // namespace
 
-std::string encode_pfm(int width, int height, int channels, std::span<const float> values) {
-    std::string bytes = fmt::format("{}\n{} {}\n-1.0\n", channels == 3 ? "PF" : "Pf", width, height);
-    bytes.reserve(bytes.size() + values.size_bytes());
-    const std::size_t row = values.size() / static_cast<std::size_t>(height);
-    for (std::size_t end = values.size(); end > 0; end -= row)
-        for (const float value : values.subspan(end - row, row)) append_little_endian(bytes, value);
-    return bytes;
+PfmPieces::PfmPieces(int width, int height, int channels, std::span<const float> values)
+    : left_(values),
+      row_(values.size() / static_cast<std::size_t>(height)),
+      piece_(fmt::format("{}\n{} {}\n-1.0\n", channels == 3 ? "PF" : "Pf", width, height)) {}
+
+std::string_view PfmPieces::next() {
+    if (!std::exchange(begun_, true)) return piece_;
+    piece_.clear();
+    if (left_.empty()) return piece_;
+    for (const float value : left_.last(row_)) append_little_endian(piece_, value);
+    left_ = left_.first(left_.size() - row_);
+    return piece_;
 }
 
 }  // namespace raya

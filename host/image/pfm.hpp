@@ -3,11 +3,25 @@
 #pragma once
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace raya {
 
-/// The bytes of a float map file, little-endian on any machine. `values`: height x width x channels floats, row-major,
-/// row 0 on top; `channels` is 3 or 1.
-std::string encode_pfm(int width, int height, int channels, std::span<const float> values);
+/// The bytes of a float map file piece by piece, little-endian on any machine: so that a large picture is not in memory
+/// twice.
+class PfmPieces {
+  public:
+    /// `values`: height x width x channels floats, row-major, row 0 on top; `channels` is 3 or 1. They outlive this.
+    PfmPieces(int width, int height, int channels, std::span<const float> values);
+
+    /// The next piece, good until the next call; empty at the end.
+    std::string_view next();
+
+  private:
+    std::span<const float> left_;
+    std::size_t row_;  // floats
+    std::string piece_;
+    bool begun_ = false;
+};
 
 }  // namespace raya

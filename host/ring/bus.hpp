@@ -19,10 +19,12 @@ class Bus {
         counted_.broadcast_words += words.size();
     }
 
-    /// The blocks of all PEs to the host. `words` of them are pixels; the rest of the blocks is empty.
+    /// All PEs hand over what their memories hold: one gather of the machine, in one part or more.
+    void begin_gather() { counted_.gathers += 1; }
+
+    /// A part of the blocks of all PEs to the host. `words` of it are pixels; the rest is empty.
     void gather(const Buffer<float>& blocks, std::span<float> to, std::uint64_t words) {
         session_.read("bus.gather", blocks, to);
-        counted_.gathers += 1;
         counted_.gather_words += words;
     }
 

@@ -35,18 +35,26 @@ RingJob ring_job(const Session& session, const Scene& scene, const RingSettings&
     return all;
 }
 
-// Calls `move` for each pixel of the PEs' blocks, which start at pixel `block` of each share, with its number in the
-// block layout [PE][capacity] and in the image.
+// Calls `move` for each pixel of a range of every PE's share, with its number in the device's layout [PE][window] and
+// in the image.
 template <class Move>
-void for_each_pixel(const raya_mapping& m, std::uint32_t block, std::uint32_t capacity, Move&& move) {
+void for_each_pixel(const raya_mapping& m, PixelRange range, std::uint32_t window, Move&& move) {
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const raya_share share = raya_share_of(m, pe);
-        const std::uint32_t end = std::min(raya_share_size(share), block + capacity);
-        for (std::uint32_t k = block; k < end; ++k) {
+        const std::uint32_t end = std::min(raya_share_size(share), range.end);
+        for (std::uint32_t k = range.begin; k < end; ++k) {
             const raya_pixel at = raya_pixel_of(m, share, k);
-            move(std::size_t{pe} * capacity + (k - block), std::size_t{at.row} * m.width + at.column);
+            move(std::size_t{pe} * window + (k - range.block), std::size_t{at.row} * m.width + at.column);
         }
     }
+}
+
+// Of large images the device holds a part of what the PEs' memories do, so that it and the host need not hold all
+// pixels twice. What goes round the ring lies there as a whole.
+std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings) {
+    if (settings.antialias.method != AntialiasMethod::kNone) return memory.block_pixels;
+    const std::uint64_t most = std::max<std::uint64_t>(1, settings.device_pixels / settings.mapping.pes);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, most));
 }
 
 // Each pixel has one primary ray, counted when its lane takes it. Some devices end long loops early and say nothing
@@ -73,9 +81,10 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
                                                  .bounces = settings_.bounces,
                                                  .share = share_,
                                                  .antialias = settings_.antialias.method})),
+      window_(device_window(memory_, settings_)),
       bus_(session, communication_),
       broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.job.words().size())),
-      pixels_(session.buffer<float>("pixel blocks", 3ull * settings_.mapping.pes * memory_.block_pixels)),
+      pixels_(session.buffer<float>("pixel blocks", 3ull * settings_.mapping.pes * window_)),
       marks_(session.buffer<std::uint8_t>("no marks", 1)) {
     build(scene);
 }
@@ -86,10 +95,10 @@ void RingRenderer::build(const Scene& scene) {
     const KernelOptions options = kernel_options(settings_, job_.job, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
-        kernels, settings_.mapping.pes, memory_.block_pixels,
+        kernels, settings_.mapping.pes, window_,
         slice_pixels(settings_,
                      settings_.accel.grid ? std::min<std::size_t>(20, scene.object_count()) : scene.object_count(),
-                     options.lanes * options.group_size, memory_.block_pixels));
+                     options.lanes * options.group_size, window_));
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.job.words());
     tracer_->clear(counters_.front());
@@ -126,13 +135,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     RingResult result;
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
-    for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) {
-        trace(block, progress);
-        if (filter_) filter_->apply(pixels_, *exchange_);
-        if (contrast_) supersample(progress);
-        gather(block, result);
-        collect_costs(block, result);
-    }
+    for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) render_block(block, result, progress);
     if (contrast_) collect_marks(result);
     collect_events(result);
     if (settings_.dynamic) simulate_schedule(result);
@@ -141,27 +144,44 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     return result;
 }
 
+// A block of each PE's share, as much as its memory holds: a window of the device's after another.
+void RingRenderer::render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress) {
+    const std::uint32_t end = std::min(share_, block + memory_.block_pixels);
+    bus_.begin_gather();
+    for (std::uint32_t window = block; window < end; window += window_) {
+        const PixelRange range{window, window, std::min(end, window + window_)};
+        trace(range, progress);
+        if (filter_) filter_->apply(pixels_, *exchange_);
+        if (contrast_) supersample(progress);
+        gather(range, result);
+        collect_costs(range, result);
+    }
+}
+
 void RingRenderer::prepare(RingResult& result) {
     const StepLog::Step step = session_.step("prepare");
     const auto width = static_cast<int>(settings_.mapping.width), height = static_cast<int>(settings_.mapping.height);
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
     result.image = {width, height, std::vector<float>(3 * pixels)};
-    result.all.cost = {settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
+    const CostImage none{settings_.mapping.width, settings_.mapping.height,
+                         std::vector<std::uint64_t>(keeps_costs() ? pixels : 0)};
+    if (counters_.size() > 1) result.all.cost = none;
     if (contrast_) result.mask = result.image;
     for (PassCounters& counters : counters_) {
         Phase phase;
         phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
-        phase.cost = result.all.cost;
+        phase.cost = none;
         result.phases.push_back(std::move(phase));
         tracer_->clear(counters);
     }
 }
 
-void RingRenderer::trace(std::uint32_t block, const ProgressCallback& progress) {
+void RingRenderer::trace(PixelRange range, const ProgressCallback& progress) {
     const StepLog::Step step = session_.step(kTracePass);
     const double passes = static_cast<double>(counters_.size());
-    const PixelRange range{block, block, std::min(share_, block + memory_.block_pixels)};
-    const auto report = [&](double done) { progress((block + done * (range.end - block)) / share_ / passes); };
+    const auto report = [&](double done) {
+        progress((range.begin + done * (range.end - range.begin)) / share_ / passes);
+    };
     tracer_->trace(kTracePass, broadcast_, range, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
                    progress ? report : ProgressCallback{});
 }
@@ -174,31 +194,32 @@ void RingRenderer::supersample(const ProgressCallback& progress) {
                    pixels_, counters_[1], progress ? report : ProgressCallback{});
 }
 
-void RingRenderer::gather(std::uint32_t block, RingResult& result) {
+void RingRenderer::gather(PixelRange range, RingResult& result) {
     const StepLog::Step step = session_.step("gather");
     const raya_mapping& m = settings_.mapping;
     std::vector<float> pixels(pixels_.size());
     std::uint64_t owned = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
-        owned += share > block ? std::min(share - block, memory_.block_pixels) : 0;
+        owned += share > range.begin ? std::min(share, range.end) - range.begin : 0;
     }
     bus_.gather(pixels_, pixels, 3 * owned);
-    for_each_pixel(m, block, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
+    for_each_pixel(m, range, window_, [&](std::size_t from, std::size_t to) {
         std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
                     result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
     });
 }
 
 // What the kernels counted is read by the host to be reported: no transfer of the machine.
-void RingRenderer::collect_costs(std::uint32_t block, RingResult& result) {
+void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
+    if (!keeps_costs()) return;
     const StepLog::Step step = session_.step("collect costs");
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
-        for_each_pixel(settings_.mapping, block, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
+        for_each_pixel(settings_.mapping, range, window_, [&](std::size_t from, std::size_t to) {
             result.phases[i].cost.cycles[to] = cycles[from];
-            result.all.cost.cycles[to] += cycles[from];
+            if (counters_.size() > 1) result.all.cost.cycles[to] += cycles[from];
         });
     }
 }
@@ -207,7 +228,7 @@ void RingRenderer::collect_marks(RingResult& result) {
     const StepLog::Step step = session_.step("collect marks");
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
-    for_each_pixel(settings_.mapping, 0, memory_.block_pixels, [&](std::size_t from, std::size_t to) {
+    for_each_pixel(settings_.mapping, {0, 0, share_}, window_, [&](std::size_t from, std::size_t to) {
         result.recomputed += marks[from];
         std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3, static_cast<float>(marks[from]));
     });
@@ -237,7 +258,7 @@ void RingRenderer::collect_events(RingResult& result) {
 // from what the pixels cost.
 void RingRenderer::simulate_schedule(RingResult& result) {
     const StepLog::Step step = session_.step("simulate schedule");
-    const Schedule schedule = dynamic_schedule(result.all.cost, settings_.mapping, *settings_.dynamic);
+    const Schedule schedule = dynamic_schedule(result.cost(), settings_.mapping, *settings_.dynamic);
     result.requests = schedule.requests;
     result.all.load = result.phases.front().load = schedule.load;
 }

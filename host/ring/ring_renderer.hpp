@@ -36,13 +36,15 @@ class RingRenderer {
     const LengthScale& scale() const { return scale_; }
 
   private:
+    bool keeps_costs() const { return settings_.keep_costs || settings_.dynamic.has_value(); }
     void build(const Scene& scene);
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
-    void trace(std::uint32_t block, const ProgressCallback& progress);
+    void render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress);
+    void trace(PixelRange range, const ProgressCallback& progress);
     void supersample(const ProgressCallback& progress);
-    void gather(std::uint32_t block, RingResult& result);
-    void collect_costs(std::uint32_t block, RingResult& result);
+    void gather(PixelRange range, RingResult& result);
+    void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
     void simulate_schedule(RingResult& result);
@@ -54,6 +56,8 @@ class RingRenderer {
     RingJob job_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;
+    std::uint32_t window_ =
+        0;  // pixels of each PE that lie on the device at a time: those of its memory, or some of them
     Communication communication_;
     Bus bus_;
     double build_s_ = 0;

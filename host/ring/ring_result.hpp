@@ -25,13 +25,13 @@ struct Phase {
     std::string name;  // kTracePass, kSupersamplePass
     EventCounts events{};
     Load load;       // modelled cycles of each PE, from its own counters
-    CostImage cost;  // modelled cycles of each pixel
+    CostImage cost;  // modelled cycles of each pixel; empty where they are not kept
 };
 
 struct RingResult {
     Image image;
     std::vector<Phase> phases;              // the first pass, and supersampling where it was asked for
-    Phase all;                              // their sums
+    Phase all;                              // their sums, but for the cost of a single phase: cost()
     Image mask;                             // 1 where a pixel was supersampled, else 0; empty without supersampling
     std::uint64_t recomputed = 0;           // pixels supersampled
     std::optional<std::uint64_t> requests;  // of a simulated dynamic distribution
@@ -44,6 +44,9 @@ struct RingResult {
     std::string build_options;
     double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
     std::vector<LabelSummary> commands;
+
+    /// Modelled cycles of each pixel in all phases.
+    const CostImage& cost() const { return phases.size() == 1 ? phases.front().cost : all.cost; }
 };
 
 /// Seconds that tracing one image took on the device; by the host's clock where the device does not time its commands.

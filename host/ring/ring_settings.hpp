@@ -20,8 +20,11 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
+    bool keep_costs = true;  // of each pixel, 8 bytes on the host; a dynamic distribution is simulated from them
     Accel accel;
     KernelChoice kernels;
+    std::uint64_t device_pixels = 1 << 22;  // of all PEs that lie on the device at a time, 20 bytes each; smoothed
+                                            // images lie there as a whole
     std::uint32_t pixels_per_launch =
         0;  // of each PE; 0: as many as take about a second, so that progress can be shown
 };

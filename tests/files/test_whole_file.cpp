@@ -67,6 +67,22 @@ TEST_CASE("write_whole_file writes all bytes and nothing else", "[whole_file]") 
     CHECK(folder.entries() == 1);
 }
 
+TEST_CASE("write_whole_file takes a file in pieces", "[whole_file]") {
+    const ScratchFolder folder;
+    int pieces = 0;
+    std::string piece;
+    write_whole_file(folder / "a", [&]() -> std::string_view {
+        piece = pieces < 1000 ? std::to_string(pieces++) + "\n" : "";
+        return piece;
+    });
+    const std::string written = contents(folder / "a");
+    CHECK(written.starts_with("0\n1\n2\n"));
+    CHECK(written.ends_with("998\n999\n"));
+    CHECK(written.size() == 10 * 2 + 90 * 3 + 900 * 4);
+    write_whole_file(folder / "a", "");
+    CHECK(contents(folder / "a").empty());
+}
+
 TEST_CASE("write_whole_file gives the permissions that any new file gets", "[whole_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "other") << "x";

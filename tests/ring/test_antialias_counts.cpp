@@ -59,7 +59,7 @@ void check_phase(const Phase& phase, const raya_mapping& m) {
 void check_sums(const RingResult& result) {
     EventCounts events{};
     std::vector<std::uint64_t> loads(result.all.load.per_pe.size());
-    std::vector<std::uint64_t> cost(result.all.cost.cycles.size());
+    std::vector<std::uint64_t> cost(result.cost().cycles.size());
     for (const Phase& phase : result.phases) {
         const auto add = [](auto& to, const auto& from) {
             REQUIRE(to.size() == from.size());
@@ -71,7 +71,7 @@ void check_sums(const RingResult& result) {
     }
     CHECK(result.all.events == events);
     CHECK(result.all.load.per_pe == loads);
-    CHECK(result.all.cost.cycles == cost);
+    CHECK(result.cost().cycles == cost);
 }
 
 /// Rotations send every PE's block of `band` pixels, 3 words each.

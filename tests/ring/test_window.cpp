@@ -1,0 +1,47 @@
+// Large images: the device holds a part of the pixels at a time, and nobody sees it.
+#include <catch2/catch.hpp>
+
+#include "tests/ring/render_scene.hpp"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+TEST_CASE("how many pixels lie on the device changes nothing that comes out", "[ring]") {
+    Session session(choose_device(""));
+    const Scene scene = project_scene("planes");
+    for (const char* machine : {"grande", "spa"}) {
+        const RingCase c{.width = 50, .height = 37, .pes = 7, .machine = machine, .lanes = 4, .bounces = 3};
+        RingSettings settings = settings_of(c);
+        const RingResult whole = RingRenderer(session, scene, settings).render();
+        for (const std::uint64_t pixels : {1, 7, 100, 1849, 1850}) {
+            CAPTURE(machine, pixels);
+            settings.device_pixels = pixels;
+            const RingResult parts = RingRenderer(session, scene, settings).render();
+            CHECK(pixel_hash(parts.image) == pixel_hash(whole.image));
+            CHECK(parts.all.events == whole.all.events);
+            CHECK(parts.all.load.per_pe == whole.all.load.per_pe);
+            CHECK(parts.cost().cycles == whole.cost().cycles);
+            CHECK(parts.communication.gathers == whole.communication.gathers);
+            CHECK(parts.communication.gather_words == whole.communication.gather_words);
+            CHECK(parts.pe_memory.bytes() == whole.pe_memory.bytes());
+        }
+    }
+}
+
+TEST_CASE("costs that nobody asks for are not kept, and all else is the same", "[ring]") {
+    Session session(choose_device(""));
+    RingSettings settings = settings_of({.width = 20, .height = 16, .pes = 5, .lanes = 4, .bounces = 3});
+    const RingResult kept = RingRenderer(session, project_scene("planes"), settings).render();
+    settings.keep_costs = false;
+    const RingResult not_kept = RingRenderer(session, project_scene("planes"), settings).render();
+    CHECK(kept.cost().cycles.size() == 320);
+    CHECK(not_kept.cost().cycles.empty());
+    CHECK(not_kept.all.load.per_pe == kept.all.load.per_pe);
+    CHECK(pixel_hash(not_kept.image) == pixel_hash(kept.image));
+    settings.dynamic = DynamicPlan{.chunk = 4};
+    CHECK(RingRenderer(session, project_scene("planes"), settings).render().cost().cycles.size() == 320);
+}
+
+}  // namespace
+}  // namespace raya
