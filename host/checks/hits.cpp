@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "host/embedded.hpp"
-#include "host/grid/accel.hpp"
+#include "host/accel/grid.hpp"
 #include "host/kernels/kernels.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/split_mix.hpp"
@@ -18,7 +18,7 @@ Program built(Session& session, const HitBuild& build) {
     options.lanes = build.lanes;
     options.format = build.format;
     options.words_local = false;
-    options.accel = true;
+    options.accel = RAYA_ACCEL_GRID;
     options.filter = build.filter;
     return Kernels(session, options, build.sources).program("checks/hits.cl");
 }
@@ -28,7 +28,7 @@ PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     settings.image = {16, 16};
     settings.format = format;
     PackedJob job = pack_job(scene, settings);
-    append_grid(job, accel_partition(job, format, {.grid = true, .divisions = Divisions{6, 5, 4}}));
+    append_grid(job, accel_partition(job, format, {.kind = AccelKind::kGrid, .divisions = Divisions{6, 5, 4}}));
     return job;
 }
 

@@ -102,7 +102,8 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
         return row_of(said_of("torus", scene, s, array), format, std::make_shared<TorusRenderer>(session, scene, t),
                       events_of_torus, [](const TorusResult& r) { return r.render_s; });
     }
-    if (way != "none" && way != "grid") throw UserError(fmt::format("--ways {}: must be none, grid or torus", way));
+    if (way != "none" && way != "grid" && way != "bvh")
+        throw UserError(fmt::format("--ways {}: must be none, grid, bvh or torus", way));
     s.accel = parse_accel(way);
     return row_of(said_of("render, " + way, scene, s, array_text(s)), format,
                   std::make_shared<RingRenderer>(session, scene, s), events_of_ring,

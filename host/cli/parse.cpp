@@ -41,13 +41,14 @@ std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const 
 
 Accel parse_accel(const std::string& text) {
     if (text == "none") return {};
-    if (text == "grid") return {.grid = true, .divisions = {}};
+    if (text == "bvh") return {.kind = AccelKind::kBvh};
+    if (text == "grid") return {.kind = AccelKind::kGrid, .divisions = {}};
     const std::vector<std::uint32_t> sides =
         text.starts_with("grid:") ? parse_sizes(text.substr(5)) : std::vector<std::uint32_t>{};
     if (sides.size() != 3)
         throw UserError(
-            fmt::format("--accel {}: must be none, grid or grid:AxBxC, A B C voxels along x, y and z", text));
-    return {.grid = true, .divisions = Divisions{sides[0], sides[1], sides[2]}};
+            fmt::format("--accel {}: must be none, bvh, grid or grid:AxBxC, A B C voxels along x, y and z", text));
+    return {.kind = AccelKind::kGrid, .divisions = Divisions{sides[0], sides[1], sides[2]}};
 }
 
 AntialiasMethod parse_antialias(const std::string& text) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/grid/accel.hpp"
+#include "host/accel/grid.hpp"
 #include "host/machine/image_size.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"

@@ -61,7 +61,15 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
     report.requests = result.requests;
     for (const Phase& phase : result.phases) report.loads.emplace_back(phase.name, phase.load);
     report.antialias = antialiasing(settings, result);
-    if (const auto& a = result.accel) report.accel = {a->divisions, a->copies, a->words, a->apart};
+    if (const auto& a = result.accel)
+        report.accel = {.kind = a->kind == AccelKind::kBvh ? "bvh" : "grid",
+                        .words = a->words,
+                        .divisions = a->divisions,
+                        .copies = a->copies,
+                        .apart = a->apart,
+                        .nodes = a->nodes,
+                        .leaves = a->leaves,
+                        .depth = a->depth};
     report.communication = result.communication;
     report.modelled = modelled(settings, result);
     return report;
@@ -88,7 +96,7 @@ void render_on_ring(const RenderCommand& command) {
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(command.render, scene);
     settings.keep_costs = !command.cost.empty();
-    warn_of_slow_search(scene, settings.accel.grid, input.warnings);
+    warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     bar->stage("preparing");
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(command.render.device); });

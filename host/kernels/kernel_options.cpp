@@ -70,7 +70,8 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     define("POLYGONS", options.polygons);
     define("PATCHES", options.patches);
     define("CONES", options.cones);
-    if (options.accel) define("ACCEL", 1);
+    if (options.accel != RAYA_ACCEL_NONE) define("ACCEL", options.accel);
+    if (options.accel == RAYA_ACCEL_BVH) define("BVH_STACK", options.stack);
     if (options.filter) define("FILTER", 1);
     return all;
 }

@@ -7,6 +7,7 @@
 #include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_source.hpp"
 #include "host/machine/number_format.hpp"
+#include "kernels/shared/accel.h"
 
 namespace raya {
 
@@ -19,7 +20,8 @@ struct KernelOptions {
     bool exact_divide = true;  // division and root are the device's own where it rounds them correctly; false: refined
     bool exact_fma = true;     // so is a b + c; false: emulated
     bool words_local = true;   // PEs take the broadcast words into local memory
-    bool accel = false;        // the job has a grid: rays walk through it
+    std::uint32_t accel = RAYA_ACCEL_NONE;  // what the job has for rays to walk through
+    std::uint32_t stack = 0;                // RAYA_BVH_STACK: links that wait while a ray goes down the tree, at most
     bool filter = false;       // spheres are filtered in fp32 before the exact test, see sphere_filter_holds
     bool polygons = true, patches = true, cones = true;
 };

@@ -55,8 +55,14 @@ Json communication_json(const Communication& c) {
 
 Json accel_json(const std::optional<AccelReport>& a) {
     if (!a) return {{"kind", "none"}};
-    return {
-        {"kind", "grid"}, {"divisions", a->divisions}, {"copies", a->copies}, {"words", a->words}, {"apart", a->apart}};
+    if (a->kind == "bvh")
+        return {
+            {"kind", a->kind}, {"nodes", a->nodes}, {"leaves", a->leaves}, {"depth", a->depth}, {"words", a->words}};
+    return {{"kind", a->kind},
+            {"divisions", a->divisions},
+            {"copies", a->copies},
+            {"words", a->words},
+            {"apart", a->apart}};
 }
 
 // Operations of all that was counted, by the modelled PEs' instruction budget.
@@ -203,10 +209,13 @@ std::string accel_line(const RenderReport& r) {
     const AccelReport& a = *r.accel;
     const EventCounts& e = r.events;
     const auto rays = static_cast<double>(ray_count(e));
+    const double tests = static_cast<double>(test_count(e)) / rays, steps = static_cast<double>(e[RAYA_STEPS]) / rays;
+    if (a.kind == "bvh")
+        return fmt::format("tree    {} nodes, {} leaves, depth {}; {:.1f} tests and {:.1f} nodes a ray\n", a.nodes,
+                           a.leaves, a.depth, tests, steps);
     return fmt::format("grid    {}x{}x{} voxels, {} copies of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
                        a.divisions[0], a.divisions[1], a.divisions[2], a.copies,
-                       a.apart ? fmt::format(", {} held apart", a.apart) : "",
-                       static_cast<double>(test_count(e)) / rays, static_cast<double>(e[RAYA_STEPS]) / rays);
+                       a.apart ? fmt::format(", {} held apart", a.apart) : "", tests, steps);
 }
 
 std::string scale_line(const RenderReport& r) {

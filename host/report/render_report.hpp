@@ -29,12 +29,14 @@ struct Antialiasing {
     std::uint32_t band_pixels = 0;  // pixels of a PE that go round the ring at a time
 };
 
-/// The grid that rays walked inside a PE.
+/// The grid or the tree that rays walked inside a PE.
 struct AccelReport {
-    std::array<std::uint32_t, 3> divisions{};  // voxels along x, y and z
-    std::uint64_t copies = 0;                  // of objects in several voxels
-    std::uint64_t words = 0;                   // of a PE's memory that hold the grid
-    std::uint64_t apart = 0;                   // large objects that every ray is tested against
+    std::string kind;                                // "grid", "bvh"
+    std::uint64_t words = 0;                         // of a PE's memory that hold it
+    std::array<std::uint32_t, 3> divisions{};        // of a grid: voxels along x, y and z
+    std::uint64_t copies = 0;                        // of objects in several voxels
+    std::uint64_t apart = 0;                         // large objects that every ray is tested against
+    std::uint64_t nodes = 0, leaves = 0, depth = 0;  // of a tree; nodes on its longest way down
 };
 
 /// The build of one program, on the host.

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 
+#include "kernels/shared/bvh.h"
+
 namespace raya {
 namespace {
 
 // Local memory is as fast as a CPU's other memory, and each launch copies the words into it for each PE: where
 // they are many and few of them are read, they stay where they are.
-bool words_local(const PackedJob& job, const DeviceInfo& device, bool accel) {
+bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMostCopied = 64 * 1024;
     const std::size_t bytes = 4 * job.words().size() + sizeof(std::uint32_t);
-    return bytes <= (accel ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
+    return bytes <=
+           (accel != AccelKind::kNone ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
 }
 
 }  // namespace
@@ -44,15 +47,17 @@ std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, st
     return std::clamp(affordable, std::min(8 * lanes, share), share);
 }
 
-KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const DeviceInfo& device) {
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
+                             const DeviceInfo& device) {
     return {.lanes = settings.kernels.lanes,
             .group_size = settings.kernels.group_size,
             .bounces = settings.bounces,
             .format = settings.format,
             .exact_divide = settings.kernels.exact_arithmetic,
             .exact_fma = settings.kernels.exact_arithmetic,
-            .words_local = settings.kernels.local_words && words_local(job, device, settings.accel.grid),
-            .accel = settings.accel.grid,
+            .words_local = settings.kernels.local_words && words_local(job, device, settings.accel.kind),
+            .accel = static_cast<std::uint32_t>(settings.accel.kind),
+            .stack = (RAYA_BVH_WIDTH - 1) * accel.depth,
             .filter = settings.kernels.filter && job.header().objects.spheres > 0 &&
                       sphere_filter_holds(settings.format, job.header().extent),
             .polygons = job.has_polygons(),

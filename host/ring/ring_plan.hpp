@@ -19,6 +19,8 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device);
 /// wait for the last.
 std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
 
-KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const DeviceInfo& device);
+/// `accel`: what was made of settings.accel.
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
+                             const DeviceInfo& device);
 
 }  // namespace raya

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "host/accel/grid.hpp"
+#include "host/accel/tree_words.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_plan.hpp"
@@ -29,9 +31,11 @@ PackedJob packed(const Session& session, const Scene& scene, const RingSettings&
 // What every PE holds of the scene.
 RingJob ring_job(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
     RingJob all{packed(session, scene, settings, scale), {}};
-    if (!settings.accel.grid) return all;
+    if (settings.accel.kind == AccelKind::kNone) return all;
     const StepLog::Step step = session.step("divide scene");
-    all.grid = append_grid(all.job, accel_partition(all.job, settings.format, settings.accel));
+    all.accel = settings.accel.kind == AccelKind::kBvh
+                    ? append_tree(all.job, settings.format)
+                    : append_grid(all.job, accel_partition(all.job, settings.format, settings.accel));
     return all;
 }
 
@@ -92,12 +96,13 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 void RingRenderer::build(const Scene& scene) {
     const StepLog::Step building = session_.step("set up device");
     const Clock::time_point start = Clock::now();
-    const KernelOptions options = kernel_options(settings_, job_.job, session_.device());
+    const KernelOptions options = kernel_options(settings_, job_.job, job_.accel, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
         kernels, settings_.mapping.pes, window_,
         slice_pixels(settings_,
-                     settings_.accel.grid ? std::min<std::size_t>(20, scene.object_count()) : scene.object_count(),
+                     settings_.accel.kind != AccelKind::kNone ? std::min<std::size_t>(20, scene.object_count())
+                                                              : scene.object_count(),
                      options.lanes * options.group_size, window_));
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.job.words());
@@ -268,7 +273,7 @@ void RingRenderer::describe(RingResult& result) {
     result.scale = scale_;
     result.communication = communication_;
     result.pe_memory = memory_;
-    if (settings_.accel.grid) result.accel = job_.grid;
+    if (settings_.accel.kind != AccelKind::kNone) result.accel = job_.accel;
     result.words_local = tracer_->options().words_local;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;

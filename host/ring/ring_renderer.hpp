@@ -17,10 +17,10 @@
 
 namespace raya {
 
-/// A job, and what was made of the grid behind it.
+/// A job, and what was made of the grid or tree behind it.
 struct RingJob {
     PackedJob job;
-    AccelSummary grid;
+    AccelSummary accel;
 };
 
 class RingRenderer {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "host/accel/accel.hpp"
 #include "host/cl/profile.hpp"
-#include "host/grid/accel.hpp"
 #include "host/image/image.hpp"
 #include "host/machine/communication.hpp"
 #include "host/machine/load.hpp"

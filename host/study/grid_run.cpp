@@ -19,7 +19,7 @@ RingSettings ring_settings(const Divisions& divisions, const GridSettings& setti
     ring.mapping = cyclic(settings.side, settings.side, 1, 0);
     ring.bounces = settings.bounces;
     ring.sampling = settings.sampling;
-    ring.accel = {.grid = true, .divisions = divisions};
+    ring.accel = {.kind = AccelKind::kGrid, .divisions = divisions};
     return ring;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "host/cl/commands.hpp"
-#include "host/grid/partition.hpp"
+#include "host/accel/partition.hpp"
 #include "host/machine/machine.hpp"
 #include "host/report/render_report.hpp"
 #include "host/scene/packer.hpp"

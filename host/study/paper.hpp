@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "host/grid/partition.hpp"
+#include "host/accel/partition.hpp"
 
 namespace raya::paper {
 

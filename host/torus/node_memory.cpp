@@ -98,7 +98,7 @@ class NodePacker {
         header.job = job_.header;
         header.job.objects = {};
         header.job.objects.planes = job_.header.objects.planes;
-        header.job.grid_at = 0;  // the walk of a node goes by its own grid
+        header.job.accel_at = 0;  // the walk of a node goes by its own grid
         header.torus = torus_;
         header.grid = partition_.grid;
         header.number = node;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/grid/partition.hpp"
+#include "host/accel/partition.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/node.h"
 

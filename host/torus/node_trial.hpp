@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "host/grid/partition.hpp"
+#include "host/accel/partition.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/scene/packer.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "host/grid/partition.hpp"
+#include "host/accel/partition.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/machine/machine.hpp"
 #include "host/scene/packer.hpp"

@@ -27,7 +27,7 @@ struct Rendering {
     MappingRule mapping = cyclic_mapping(8);  // of the ring
     std::uint32_t pes = kPictureSide;
     std::uint32_t pixels_per_launch = 0;  // of each PE; 0: all
-    bool grid = false;
+    AccelKind accel = AccelKind::kNone;
     bool torus = false;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
     Links links = Links::kTorus3d;
@@ -38,7 +38,8 @@ struct Rendering {
     std::string name() const {
         std::string way = torus ? fmt::format("{} {}{}", links_name(links), sides_text(nodes),
                                               inject == Injection::kRoot ? " root" : "")
-                                : fmt::format("{} on {}{}", mapping_name(mapping), pes, grid ? ", grid" : "");
+                                : fmt::format("{} on {}{}", mapping_name(mapping), pes,
+                                              accel == AccelKind::kNone ? "" : ", " + accel_text({.kind = accel}));
         if (mapping.kind == RAYA_FOLD_BLOCK) way += ", block fold";
         if (pixels_per_launch) way += fmt::format(", {} pixels a launch", pixels_per_launch);
         if (global_words) way += ", global words";
@@ -64,7 +65,7 @@ Rendered render_on_ring(const Verification& v, Session& session, const Rendering
     const Picture& picture = picture_named(r.picture);
     RingSettings settings = plain_settings(picture);
     settings.mapping = make_mapping(r.mapping, {kPictureSide, kPictureSide}, r.pes);
-    settings.accel.grid = r.grid;
+    settings.accel.kind = r.accel;
     settings.pixels_per_launch = r.pixels_per_launch;
     settings.kernels = kernels_for(v, r);
     RingResult result = RingRenderer(session, scene_of(picture), settings).render();
@@ -177,11 +178,11 @@ std::vector<Rendering> usual_renderings() {
          .global_words = true,
          .refined = true},
         {.picture = "ties fp32"},
-        {.picture = "ties fp32", .grid = true},
+        {.picture = "ties fp32", .accel = AccelKind::kGrid},
         {.picture = "ties fp32", .torus = true},
         {.picture = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
-        {.picture = "polygons fp32", .quick = true, .grid = true},
-        {.picture = "polygons fp32", .grid = true, .global_words = true},
+        {.picture = "polygons fp32", .quick = true, .accel = AccelKind::kGrid},
+        {.picture = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
         {.picture = "polygons fp32", .quick = true, .torus = true},
         {.picture = "polygons fp32", .torus = true, .global_words = true},
         {.picture = "polygons fp32", .quick = true, .torus = true, .nodes = {3, 2, 2}, .links = k2d, .inject = kRoot},
@@ -192,11 +193,11 @@ std::vector<Rendering> usual_renderings() {
         {.picture = "mirrors spa22", .refined = true},
         {.picture = "polygons spa22", .torus = true, .refined = true},
         {.picture = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
-        {.picture = "planes fp32 corners", .grid = true},
+        {.picture = "planes fp32 corners", .accel = AccelKind::kGrid},
         {.picture = "spheres e8m12t"},
         {.picture = "glass e8m21"},
         {.picture = "mirrors spa22", .torus = true, .links = k2d},
-        {.picture = "polygons spa22", .grid = true},
+        {.picture = "polygons spa22", .accel = AccelKind::kGrid},
         {.picture = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
         {.picture = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
 }
@@ -210,7 +211,7 @@ std::vector<Rendering> all_builds() {
                  {"glass fp32", "polygons fp32", "mirrors spa22", "cones e5m10", "spheres e8m12t"})
                 all.push_back({.picture = picture, .lanes = lanes, .group_size = group});
             for (const char* picture : {"polygons fp32", "polygons spa22"}) {
-                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .grid = true});
+                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .accel = AccelKind::kGrid});
                 all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .torus = true});
             }
             all.push_back({.picture = "glass fp32 filter", .lanes = lanes, .group_size = group});

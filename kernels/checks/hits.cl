@@ -15,7 +15,7 @@ void hits_of_all(__global const uint* restrict job,
     store_bits(distances + first, 1, h.distance);
 }
 
-#if RAYA_ACCEL
+#if RAYA_ACCEL == RAYA_ACCEL_GRID
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void hits_by_grid(__global const uint* restrict job,
                   __global const float* restrict rays,

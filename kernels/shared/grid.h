@@ -11,14 +11,14 @@ typedef struct {
     float cell[3];          // sides of a voxel, > 0
     raya_u32 divisions[3];  // A, B, C
     // Largest coordinate of a ray's origin for which a hit is sure to lie in a voxel that its object is registered in;
-    // a ray from farther away has to be tested against all objects (host/grid/partition.hpp).
+    // a ray from farther away has to be tested against all objects (host/accel/partition.hpp).
     float reach;
 } raya_grid;
 RAYA_SHARED_SIZE(raya_grid, 4 * 10);
 
 #define RAYA_NO_VOXEL 0xffffffffu
 
-// The grid in the words of a job, at raya_job.grid_at. After this header: the numbers of the objects held apart; a word
+// The grid in the words of a job, at raya_job.accel_at. After this header: the numbers of the objects held apart; a word
 // for each voxel; the rows of all lists, four words each, list after list; the number of each row's object. "at" words
 // are distances from the job's first word.
 typedef struct {

@@ -24,7 +24,7 @@ typedef struct {
     raya_u32 lights;   // how many
     raya_u32 lights_at;
     raya_objects objects;
-    raya_u32 grid_at;  // where the grid that rays walk starts; 0: none, every ray is tested against all objects
+    raya_u32 accel_at;  // where the grid or tree that rays walk starts; 0: none, every ray is tested against all objects
     raya_u32 cycles[RAYA_EVENTS];    // modelled cycles of one event of each kind
     float eye[3];                    // origin of the primary rays
     float corner[3];                 // unnormalised direction of the ray of row 0, column 0

@@ -1,4 +1,4 @@
-// The grid of a PE decides which objects are tested, never what comes out (`--accel grid`).
+// The grid or tree of a PE decides which objects are tested, never what comes out (`--accel grid`, `--accel bvh`).
 #include <catch2/catch.hpp>
 
 #include "host/error.hpp"
@@ -19,9 +19,11 @@ RingResult render_with(Session& session, const Scene& scene, const RingCase& c, 
     return RingRenderer(session, scene, settings).render();
 }
 
-const Accel kAutomatic{.grid = true, .divisions = {}};
+const Accel kAutomatic{.kind = AccelKind::kGrid, .divisions = {}}, kTree{.kind = AccelKind::kBvh, .divisions = {}};
 
-Accel cut(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return {.grid = true, .divisions = Divisions{a, b, c}}; }
+Accel cut(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return {.kind = AccelKind::kGrid, .divisions = Divisions{a, b, c}};
+}
 
 std::uint64_t tests_of(const EventCounts& e) {
     return e[RAYA_SPHERE_TESTS] + e[RAYA_PLANE_TESTS] + e[RAYA_POLYGON_TESTS] + e[RAYA_CONE_TESTS];
@@ -29,7 +31,7 @@ std::uint64_t tests_of(const EventCounts& e) {
 
 }  // namespace
 
-TEST_CASE("a grid changes no bit of the image, whatever its voxels and the format", "[ring][accel]") {
+TEST_CASE("a grid or a tree changes no bit of the image, whatever its voxels and the format", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string name = GENERATE("centre", "glass", "polygons", "cones", "planes");
     const std::string format = GENERATE("fp32", "spa22");
@@ -38,15 +40,16 @@ TEST_CASE("a grid changes no bit of the image, whatever its voxels and the forma
     const Scene scene = project_scene(name);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .format = format};
     const std::string expected = answer_of(render_with(session, scene, c, {}));
-    for (const Accel& accel : {kAutomatic, cut(1, 1, 1), cut(7, 3, 5), cut(1, 40, 2), cut(24, 24, 24)}) {
+    for (const Accel& accel : {kTree, kAutomatic, cut(1, 1, 1), cut(7, 3, 5), cut(1, 40, 2), cut(24, 24, 24)}) {
         CAPTURE(name, format, accel_text(accel));
         const RingResult result = render_with(session, scene, c, accel);
         CHECK(answer_of(result) == expected);
-        CHECK(result.all.events[RAYA_STEPS] >= result.all.events[RAYA_WALKS]);
+        CHECK(result.all.events[RAYA_WALKS] > 0);
+        if (accel.kind == AccelKind::kGrid) CHECK(result.all.events[RAYA_STEPS] >= result.all.events[RAYA_WALKS]);
     }
 }
 
-TEST_CASE("scenes of all kinds of objects look alike with a grid, in coarse formats too", "[ring][accel]") {
+TEST_CASE("scenes of all kinds of objects look alike with a grid or a tree, in coarse formats too", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "e6m15t", "e5m10", "e8m12", "e5m6");
     SplitMix random(2026);
@@ -59,6 +62,49 @@ TEST_CASE("scenes of all kinds of objects look alike with a grid, in coarse form
         const std::string expected = answer_of(render_with(session, scene, c, {}));
         CHECK(answer_of(render_with(session, scene, c, cut(a, b, d))) == expected);
         CHECK(answer_of(render_with(session, scene, c, kAutomatic)) == expected);
+        CHECK(answer_of(render_with(session, scene, c, kTree)) == expected);
+    }
+}
+
+// Spheres, polygons and cones that are tiny and huge, touch, nest, coincide, and lie in planes along the axes, as rays
+// do that are sent along them.
+Scene crowded_scene(std::uint64_t seed) {
+    Scene scene = random_view_scene(kRichScenes[0]);
+    SplitMix random(seed);
+    scene.spheres.clear();
+    scene.polygons.clear();
+    scene.cones.clear();
+    const auto place = [&] { return Vec3(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)); };
+    const auto surface = [&] { return static_cast<int>(random_below(random, scene.surfaces.size())); };
+    const auto size = [&] { return std::pow(10.0, random.uniform(-3, 0.3)); };
+    for (int i = 0; i < 60; ++i) {
+        const Vec3 at = place();
+        const double r = size();
+        scene.spheres.push_back({at, r, surface()});
+        if (i % 5 == 0) scene.spheres.push_back({at, r, surface()});                      // the same again
+        if (i % 5 == 1) scene.spheres.push_back({at, -r / 2, surface()});                 // within, seen from inside
+        if (i % 5 == 2) scene.spheres.push_back({at + Vec3(2 * r, 0, 0), r, surface()});  // touching
+    }
+    for (int i = 0; i < 40; ++i) {
+        const Vec3 at = place();
+        Vec3 u(size(), 0, 0), v(0, size(), 0);
+        if (i % 2) std::swap(v.y, v.z);  // along axes, all of them
+        scene.polygons.push_back({{at, at + u, at + u + v, at + v}, {}, surface()});
+        const Vec3 to = at + 0.3 * place();
+        scene.cones.push_back({at, size(), to, size(), surface()});
+    }
+    return scene;
+}
+
+TEST_CASE("crowds of objects of all sizes look alike with a tree", "[ring][accel]") {
+    Session session(choose_device(""));
+    const std::string format = GENERATE("fp32", "spa22");
+    for (unsigned seed = 1; seed <= quick_cases(4, 200); ++seed) {
+        Scene scene = crowded_scene(seed);
+        if (seed % 3 == 0) scene.view.from = scene.view.at - Vec3(0, 0, 8);  // along an axis
+        const RingCase c{.width = 24, .height = 20, .pes = 6, .bounces = 3, .format = format};
+        CAPTURE(seed, format);
+        CHECK(answer_of(render_with(session, scene, c, kTree)) == answer_of(render_with(session, scene, c, {})));
     }
 }
 
@@ -66,18 +112,23 @@ TEST_CASE("tests and steps are counted for each ray, whatever lanes, groups and 
     Session session(choose_device(""));
     const Scene scene = project_scene("polygons");
     const std::string format = GENERATE("fp32", "spa22");
+    const Accel accel = GENERATE_COPY(cut(5, 4, 6), kTree);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .lanes = 1, .group = 1, .format = format};
-    const EventCounts expected = render_with(session, scene, c, cut(5, 4, 6)).all.events;
-    CHECK(expected[RAYA_STEPS] > expected[RAYA_WALKS]);
+    const EventCounts expected = render_with(session, scene, c, accel).all.events;
+    CHECK(expected[RAYA_STEPS] > 0);
     for (const auto& [lanes, group, pes] :
          quick(2, {std::array{4u, 1u, 8u}, {1u, 16u, 1u}, {8u, 3u, 32u}, {16u, 1u, 5u}})) {
-        CAPTURE(format, lanes, group, pes);
+        CAPTURE(format, accel_text(accel), lanes, group, pes);
         RingCase other = c;
         other.lanes = lanes;
         other.group = group;
         other.pes = pes;
-        CHECK(render_with(session, scene, other, cut(5, 4, 6)).all.events == expected);
+        CHECK(render_with(session, scene, other, accel).all.events == expected);
     }
+    RingSettings global = raya::settings_of(c);
+    global.accel = accel;
+    global.kernels.local_words = false;
+    CHECK(RingRenderer(session, scene, global).render().all.events == expected);
 }
 
 TEST_CASE("rays of how many trees and lights wait together changes no bit and no count", "[ring][accel]") {
@@ -131,6 +182,7 @@ TEST_CASE("of objects at equal distances the lowest number is hit, in whichever 
         CHECK(answer_of(render_with(session, scene, c, cut(1, 1, 1))) == expected);
         CHECK(answer_of(render_with(session, scene, c, cut(8, 5, 7))) == expected);
         CHECK(answer_of(render_with(session, scene, c, kAutomatic)) == expected);
+        CHECK(answer_of(render_with(session, scene, c, kTree)) == expected);
     }
 }
 
@@ -165,6 +217,7 @@ TEST_CASE("of a plane, a polygon held apart and listed ones at equal distances t
         CHECK(answer_of(grid) == expected);
         CHECK(grid.accel->apart == 1);
         CHECK(answer_of(render_with(session, scene, c, cut(9, 9, 3))) == expected);
+        CHECK(answer_of(render_with(session, scene, c, kTree)) == expected);
     }
 }
 
@@ -190,13 +243,13 @@ TEST_CASE("a hit where a ray ends is none, in whichever voxel it is found", "[ri
     const RingResult plain = render_with(session, scene, c, {});
     CHECK(plain.all.events[RAYA_SHADOW_HITS] > 0);
     CHECK(plain.all.events[RAYA_LIT] > 0);
-    for (const Accel& accel : {kAutomatic, cut(5, 6, 7), cut(3, 2, 16)}) {
+    for (const Accel& accel : {kTree, kAutomatic, cut(5, 6, 7), cut(3, 2, 16)}) {
         CAPTURE(format, accel_text(accel));
         CHECK(answer_of(render_with(session, scene, c, accel)) == answer_of(plain));
     }
 }
 
-TEST_CASE("supersampling through a grid gives the same pixels", "[ring][accel]") {
+TEST_CASE("supersampling through a grid or a tree gives the same pixels", "[ring][accel]") {
     Session session(choose_device(""));
     RingCase c{.width = 32, .height = 24, .pes = 8};
     c.antialias.method = AntialiasMethod::kSupersample;
@@ -204,9 +257,10 @@ TEST_CASE("supersampling through a grid gives the same pixels", "[ring][accel]")
     const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, kAutomatic);
     CHECK(plain.recomputed > 0);
     CHECK(answer_of(grid) == answer_of(plain));
+    CHECK(answer_of(render_with(session, scene, c, kTree)) == answer_of(plain));
 }
 
-TEST_CASE("a grid saves nearly all tests of many small spheres", "[ring][accel]") {
+TEST_CASE("a grid or a tree saves nearly all tests of many small spheres", "[ring][accel]") {
     Session session(choose_device(""));
     const Scene scene = generate_balls(3);
     const RingCase c{.width = 48, .height = 48, .pes = 48};
@@ -216,6 +270,48 @@ TEST_CASE("a grid saves nearly all tests of many small spheres", "[ring][accel]"
     CHECK(grid.accel->apart == 1);  // the ground
     CHECK(tests_of(plain.all.events) > 20 * tests_of(grid.all.events));
     CHECK(grid.pe_memory.job_words == plain.pe_memory.job_words + grid.accel->words);
+    const RingResult tree = render_with(session, scene, c, kTree);
+    CHECK(answer_of(tree) == answer_of(plain));
+    CHECK(tests_of(plain.all.events) > 20 * tests_of(tree.all.events));
+    CHECK(tree.pe_memory.job_words == plain.pe_memory.job_words + tree.accel->words);
+}
+
+// Lines of the tree's own kernels, each of which must show in an image or in what is counted. One scene has every kind
+// of object, and several nodes on the way to most; in the other many hits are at equal distances.
+TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel]") {
+    Session session(choose_device(""));
+    Scene copies = crowded_scene(3);  // more of each sphere than a leaf holds
+    const std::vector<Sphere> spheres(copies.spheres.begin(), copies.spheres.begin() + 10);
+    for (int i = 0; i < 20; ++i)
+        for (const Sphere& s : spheres) copies.spheres.push_back({s.centre, 1, i < 7 ? 0 : 1});
+    const std::vector<Scene> scenes = {crowded_scene(2), copies};
+    RingSettings settings = raya::settings_of({.width = 24, .height = 20, .pes = 6, .bounces = 3});
+    settings.accel = kTree;
+    const auto answers = [&] {
+        std::string all;
+        for (const Scene& scene : scenes) {
+            const RingResult result = RingRenderer(session, scene, settings).render();
+            all += answer_of(result) + std::to_string(tests_of(result.all.events)) + " ";
+        }
+        return all;
+    };
+    const std::string right = answers();
+    const std::vector<SourcePatch> faults = {
+        {"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"},
+        {"bvh/boxes.clh", "const mask enters = near <= far;", "const mask enters = near + 0.01f <= far;"},
+        {"bvh/boxes.clh", "popcount(entered) - 1", "popcount(entered) - 2 + (popcount(entered) == 1)"},
+        {"bvh/descent.clh", "(p->entries[lane][top] > p->distance.lane[lane])",
+         "(p->entries[lane][top] * 1.01f > p->distance.lane[lane])"},
+        {"bvh/descent.clh", "shadow && h.object != RAYA_NO_OBJECT ? RAYA_NO_LINK",
+         "h.object != RAYA_NO_OBJECT ? RAYA_NO_LINK"},
+        {"bvh/leaves.clh", "number < h->object;", "number > h->object;"},
+        {"bvh/descent.clh", "m & mask_not(done);", "m & mask_not(done) & (r.direction.x > 0.0f);"}};
+    for (const SourcePatch& fault : faults) {
+        settings.kernels.sources.patches = {fault};
+        check_patches(settings.kernels.sources);
+        CAPTURE(fault.file, fault.replace);
+        CHECK(answers() != right);
+    }
 }
 
 TEST_CASE("a grid that does not fit a PE is refused with both figures", "[ring][accel]") {

@@ -62,7 +62,7 @@ TEST_CASE("so does a random scene, with a grid too", "[ring][scales]") {
         CAPTURE(seed, k);
         const RingResult as_is = render_scene(scene, in_format("spa22"));
         RingSettings settings = settings_of(in_format("spa22"));
-        settings.accel.grid = true;
+        settings.accel.kind = AccelKind::kGrid;
         Session session(choose_device(""));
         const Scene other = scaled_scene(scene, std::ldexp(1, k));
         CHECK(pixel_hash(render_scene(other, in_format("spa22")).image) == pixel_hash(as_is.image));

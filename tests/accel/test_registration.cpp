@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "host/grid/hit_regions.hpp"
+#include "host/accel/hit_regions.hpp"
 #include "host/scene/nff_reader.hpp"
-#include "tests/grid/partition_lists.hpp"
+#include "tests/accel/partition_lists.hpp"
 #include "tests/paths.h"
 
 namespace raya {
@@ -67,7 +67,7 @@ TEST_CASE("every hit lies in voxels that list its object") {
     std::size_t hits = 0, cases = 0;
     for (const std::string& name : kFormats) {
         const NumberFormat format = parse_format(name);
-        KernelRunner runner("tests/grid/hits_probe.cl", {4, true, format});
+        KernelRunner runner("tests/accel/hits_probe.cl", {4, true, format});
         for (const ObjectKind& kind : object_kinds())
             for (std::uint64_t seed = 0; seed < cases_wanted() && kind.name != "plane"; ++seed, ++cases) {
                 SplitMix random(seed);
@@ -87,7 +87,7 @@ TEST_CASE("every hit lies in voxels that list its object") {
 // Nearly parallel to a cylinder, half a unit off it: b is 0 and a c is so small that it is flushed to 0.
 TEST_CASE("a discriminant that is flushed to 0 is no hit of a cone") {
     const NumberFormat format = parse_format("e6m15");
-    KernelRunner runner("tests/grid/hits_probe.cl", {4, true, format});
+    KernelRunner runner("tests/accel/hits_probe.cl", {4, true, format});
     Scene scene = empty_scene();
     scene.cones = {{{0, 0, 0}, 0.125, {1, 0, 0}, 0.125, 0}};
     AimedRays rays;

@@ -1,4 +1,4 @@
-#include "host/grid/accel.hpp"
+#include "host/accel/grid.hpp"
 
 #include <fmt/core.h>
 
@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "host/accel/hit_regions.hpp"
 #include "host/error.hpp"
-#include "host/grid/hit_regions.hpp"
 #include "host/scene/word_records.hpp"
 
 namespace raya {
@@ -88,13 +88,6 @@ GridLists grid_lists(const std::vector<std::uint32_t>& words, const raya_objects
 
 }  // namespace
 
-std::string accel_text(const Accel& accel) {
-    if (!accel.grid) return "none";
-    if (!accel.divisions) return "grid";
-    const Divisions& d = *accel.divisions;
-    return fmt::format("grid:{}x{}x{}", d[0], d[1], d[2]);
-}
-
 std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberFormat& format) {
     std::vector<std::uint32_t> large;
     for (;;) {
@@ -152,9 +145,13 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
     put(lists.numbers, header.numbers_at);
     job.append(words);
     raya_job with_grid = job.header();
-    with_grid.grid_at = word_number(at);
+    with_grid.accel_at = word_number(at);
     job.set_header(with_grid);
-    return {{p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]}, p.copies(), next - at, header.apart};
+    return {.kind = AccelKind::kGrid,
+            .words = next - at,
+            .divisions = {p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]},
+            .copies = p.copies(),
+            .apart = header.apart};
 }
 
 }  // namespace raya

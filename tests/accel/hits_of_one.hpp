@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/scene/packer.hpp"
-#include "tests/grid/aimed_rays.hpp"
+#include "tests/accel/aimed_rays.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/kernels/probe.hpp"
 

@@ -1,4 +1,4 @@
-#include "host/grid/partition.hpp"
+#include "host/accel/partition.hpp"
 
 #include <fmt/core.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/accel/hit_regions.hpp"
 #include "host/error.hpp"
-#include "host/grid/hit_regions.hpp"
 
 namespace raya {
 namespace {

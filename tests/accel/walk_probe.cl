@@ -13,7 +13,7 @@ void walks(__global const raya_grid* restrict grid,
     const uint first = first_ray();
     const raya_grid g = *grid;
     const ray r = load_ray(rays, first);
-    store_index(wide + first, 1, choose_index(is_wide(g, r), (index)(1), (index)(0)));
+    store_index(wide + first, 1, choose_index(is_wide(g.reach, r), (index)(1), (index)(0)));
     voxel_walk w = enter_grid(g, r, mask_all(1));
     for (uint i = 0; i < most; ++i) {
         const mask walking = w.voxel != RAYA_NO_VOXEL;
@@ -61,6 +61,6 @@ void made_directions(__global const raya_grid* restrict grid,
     const vec d = vec_normalize(load_vec(arms + first * 6, 6)), n = vec_normalize(load_vec(arms + first * 6 + 3, 6));
     const ray sent = {zero, d, num_all(1.0f)};
     const ray reflected = {zero, vec_mad(n, num_mul(num_const(-2.0f), vec_dot(n, d)), d), num_all(1.0f)};
-    store_index(wide + first * 2, 2, choose_index(is_wide(*grid, sent), (index)(1), (index)(0)));
-    store_index(wide + first * 2 + 1, 2, choose_index(is_wide(*grid, reflected), (index)(1), (index)(0)));
+    store_index(wide + first * 2, 2, choose_index(is_wide(grid->reach, sent), (index)(1), (index)(0)));
+    store_index(wide + first * 2 + 1, 2, choose_index(is_wide(grid->reach, reflected), (index)(1), (index)(0)));
 }

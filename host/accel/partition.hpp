@@ -4,14 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/accel/accel.hpp"
 #include "host/error.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/grid.h"
 
 namespace raya {
-
-using Divisions = std::array<std::uint32_t, 3>;  // voxels along x, y, z
 
 inline constexpr std::uint64_t kMostCutVoxels = std::uint64_t{1} << 24;  // of one partition
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "host/grid/partition.hpp"
-#include "tests/grid/hits_of_one.hpp"
-#include "tests/grid/random_walks.hpp"
+#include "host/accel/partition.hpp"
+#include "tests/accel/hits_of_one.hpp"
+#include "tests/accel/random_walks.hpp"
 
 namespace raya {
 

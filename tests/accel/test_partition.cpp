@@ -5,9 +5,9 @@
 #include <set>
 
 #include "host/error.hpp"
-#include "host/grid/hit_regions.hpp"
-#include "host/grid/partition.hpp"
-#include "tests/grid/partition_lists.hpp"
+#include "host/accel/hit_regions.hpp"
+#include "host/accel/partition.hpp"
+#include "tests/accel/partition_lists.hpp"
 
 namespace raya {
 namespace {

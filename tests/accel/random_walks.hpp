@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/grid/partition.hpp"
+#include "host/accel/partition.hpp"
 #include "host/scene/split_mix.hpp"
 #include "kernels/shared/grid.h"
 #include "tests/kernels/random_scene.hpp"

@@ -10,7 +10,7 @@
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"
-#include "tests/grid/random_walks.hpp"
+#include "tests/accel/random_walks.hpp"
 #include "tests/kernels/random_scene.hpp"
 #include "tests/reference/reference.hpp"
 

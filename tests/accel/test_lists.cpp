@@ -2,14 +2,14 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "host/grid/accel.hpp"
+#include "host/accel/grid.hpp"
 #include "host/scene/word_records.hpp"
-#include "tests/grid/partition_lists.hpp"
+#include "tests/accel/partition_lists.hpp"
 
 namespace raya {
 namespace {
 
-raya_grid_words grid_of(const PackedJob& job) { return record_at<raya_grid_words>(job.words(), job.header().grid_at); }
+raya_grid_words grid_of(const PackedJob& job) { return record_at<raya_grid_words>(job.words(), job.header().accel_at); }
 
 /// Numbers of the objects that the voxel word leads to. Checks that every sphere's row holds its words.
 std::vector<std::uint32_t> objects_behind(const PackedJob& job, std::uint32_t word) {
@@ -83,9 +83,9 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words s
         CHECK(summary.copies == p.copies());
         CHECK(summary.apart == apart.size());
         CHECK(summary.divisions == divisions);
-        CHECK(job.words().size() - job.header().grid_at == summary.words);
+        CHECK(job.words().size() - job.header().accel_at == summary.words);
         raya_job unlinked = job.header();
-        unlinked.grid_at = 0;
+        unlinked.accel_at = 0;
         job.set_header(unlinked);
         CHECK(std::equal(before.begin(), before.end(), job.words().begin()));
     }

@@ -22,7 +22,7 @@
 // discriminant is > 0, |q| >= root >= sqrt(f), and that is at most 2 sqrt(f) S. So the distance from the axis is at
 // most sqrt((r0 + k z)^2 + e), with 0 <= z <= h but for 8uS. S follows from that, as start and D are perpendicular but
 // for (s + 6u) n; a steep cone in a coarse format has none.
-#include "host/grid/hit_regions.hpp"
+#include "host/accel/hit_regions.hpp"
 
 #include <algorithm>
 #include <bit>

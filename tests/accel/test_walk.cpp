@@ -6,8 +6,8 @@
 #include <set>
 
 #include "host/scene/word_records.hpp"
-#include "tests/grid/random_walks.hpp"
-#include "tests/grid/reference_walk.hpp"
+#include "tests/accel/random_walks.hpp"
+#include "tests/accel/reference_walk.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/kernels/probe.hpp"
 
@@ -65,7 +65,7 @@ Path path_of(const Walks& walks, std::size_t ray, std::uint32_t most) {
     return path;
 }
 
-/// How far a ray can be from its voxel: a quarter of what host/grid/partition.cpp allows for.
+/// How far a ray can be from its voxel: a quarter of what host/accel/partition.cpp allows for.
 double walk_error(const raya_grid& grid, const reference::Ray& ray) {
     double box = 0, origin = 0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -162,7 +162,7 @@ void check_walk(const raya_grid& grid, const reference::Ray& ray, double limit, 
 }  // namespace
 
 TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
-    KernelRunner runner("tests/grid/walk_probe.cl", {1, true, {}});
+    KernelRunner runner("tests/accel/walk_probe.cl", {1, true, {}});
     std::size_t visits = 0, empty = 0;
     for (std::size_t seed = 0; seed < kGrids; ++seed) {
         const WalkCase c(seed);
@@ -180,7 +180,7 @@ TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
 }
 
 TEST_CASE("a walk that is taken up in any of its voxels goes on as before") {
-    KernelRunner runner("tests/grid/walk_probe.cl", {16, true, {}});
+    KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
     for (std::size_t seed = 0; seed < kGrids / 2; ++seed) {
         const WalkCase c(seed);
         const Walks walks = walk(runner, c.grid, c.words());
@@ -197,7 +197,7 @@ TEST_CASE("walks of all widths of lanes are the same to the bit") {
     std::vector<Walks> first;
     for (const Variant& variant : variants()) {
         CAPTURE(variant.name());
-        KernelRunner runner("tests/grid/walk_probe.cl", variant);
+        KernelRunner runner("tests/accel/walk_probe.cl", variant);
         constexpr std::size_t kFewGrids = 8;
         for (std::size_t seed = 0; seed < kFewGrids; ++seed) {
             const WalkCase c(seed);
@@ -213,7 +213,7 @@ TEST_CASE("walks of all widths of lanes are the same to the bit") {
 
 // A ray from beyond the reach, or of a direction that is too long or too short, and nothing else.
 TEST_CASE("rays whose hits may lie elsewhere are wide") {
-    KernelRunner runner("tests/grid/walk_probe.cl", {16, true, {}});
+    KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
     constexpr float kBeyond = 0x1.000002p3F, kLong = 1 + 0x1.8p-21F, kTooLong = 1 + 0x1.4p-20F,
                     kTooShort = 1 - 0x1.4p-20F;
     raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
@@ -242,7 +242,7 @@ TEST_CASE("rays of normalised directions, and those reflected once, are hardly e
     const raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     constexpr std::size_t kCount = 1 << 16;
     for (const char* format : {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10t"}) {
-        KernelRunner runner("tests/grid/walk_probe.cl", {4, true, parse_format(format)});
+        KernelRunner runner("tests/accel/walk_probe.cl", {4, true, parse_format(format)});
         SplitMix random(1);
         std::vector<float> arms;
         for (std::size_t i = 0; i < kCount * 2; ++i) {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/scene/word_records.hpp"
-#include "tests/grid/random_walks.hpp"
+#include "tests/accel/random_walks.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/kernels/probe.hpp"
 
@@ -65,8 +65,8 @@ std::size_t end_of_walk(const Walks& w, std::size_t ray, std::uint32_t most) {
 TEST_CASE("lanes step through the voxels of the walk, at the same t, whatever their number") {
     std::size_t steps = 0;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
-        KernelRunner plain("tests/grid/walk_probe.cl", {lanes, true}),
-            stepped("tests/grid/stepper_probe.cl", {lanes, true});
+        KernelRunner plain("tests/accel/walk_probe.cl", {lanes, true}),
+            stepped("tests/accel/stepper_probe.cl", {lanes, true});
         for (std::uint64_t seed = 0; seed < kGrids; ++seed) {
             SplitMix random(seed);
             const raya_grid grid = random_grid(random);

@@ -1,0 +1,199 @@
+#include "host/accel/tree.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kBins = 32;        // along each axis
+constexpr std::uint32_t kEvenFrom = 24;  // depth from which on halves are taken, so that no tree is much deeper
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr Bounds kEmpty = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+
+void extend(Bounds& box, const Bounds& by) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = std::min(box.low[axis], by.low[axis]);
+        box.high[axis] = std::max(box.high[axis], by.high[axis]);
+    }
+}
+
+// Half the surface.
+float area(const Bounds& box) {
+    if (box.low[0] > box.high[0]) return 0;
+    const float x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
+    return x * y + y * z + z * x;
+}
+
+// Twice the middle.
+float middle(const TreeItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
+
+// Leaves that so many items fill.
+float leaves(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
+
+// Items that are to become one child of a node.
+struct Part {
+    std::span<TreeItem> items;
+    Bounds box;
+
+    bool is_leaf() const {
+        return items.size() <= RAYA_BVH_WIDTH &&
+               std::all_of(items.begin(), items.end(), [&](const TreeItem& i) { return i.kind == items[0].kind; });
+    }
+};
+
+Part part_of(std::span<TreeItem> items) {
+    Part part{items, kEmpty};
+    for (const TreeItem& item : items) extend(part.box, item.box);
+    return part;
+}
+
+struct Bin {
+    Bounds box = kEmpty;
+    std::size_t items = 0;
+};
+
+// Where middles lie along an axis, and in which bin.
+struct Scale {
+    float low = kInfinity, high = -kInfinity;
+    float bins_per_unit = 0;
+
+    std::size_t bin(float middle) const {
+        return std::min(kBins - 1, static_cast<std::size_t>((middle - low) * bins_per_unit));
+    }
+};
+
+std::array<Scale, 3> scales_of(std::span<const TreeItem> items) {
+    std::array<Scale, 3> scales;
+    for (const TreeItem& item : items)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            scales[axis].low = std::min(scales[axis].low, middle(item, axis));
+            scales[axis].high = std::max(scales[axis].high, middle(item, axis));
+        }
+    for (Scale& scale : scales) {
+        const float wide = scale.high - scale.low;
+        const float most = static_cast<float>(kBins) / wide;
+        scale.bins_per_unit = wide > 0 && most < kInfinity ? most : 0;
+    }
+    return scales;
+}
+
+// The best cut between bins: items in the bins up to `last` along the axis lie on one side.
+struct Cut {
+    float cost = kInfinity;
+    std::size_t axis = 0, last = 0;
+};
+
+void find_cut(Cut& best, std::size_t axis, const std::array<Bin, kBins>& bins) {
+    std::array<float, kBins> above{};  // cost of the bins behind each
+    Bin sum;
+    for (std::size_t b = kBins - 1; b > 0; --b) {
+        extend(sum.box, bins[b].box);
+        sum.items += bins[b].items;
+        above[b - 1] = area(sum.box) * leaves(sum.items);
+    }
+    const std::size_t all = sum.items + bins[0].items;
+    sum = {};
+    for (std::size_t b = 0; b + 1 < kBins; ++b) {
+        extend(sum.box, bins[b].box);
+        sum.items += bins[b].items;
+        const float cost = area(sum.box) * leaves(sum.items) + above[b];
+        if (sum.items > 0 && sum.items < all && cost < best.cost) best = {cost, axis, b};
+    }
+}
+
+using Parts = std::array<Part, 2>;
+
+Parts halves_at(const Part& part, std::size_t items) {
+    return {part_of(part.items.first(items)), part_of(part.items.subspan(items))};
+}
+
+// By number: of items that all lie in the same place, or where a tree would grow too deep.
+Parts even_halves(const Part& part) {
+    std::sort(part.items.begin(), part.items.end(),
+              [](const TreeItem& a, const TreeItem& b) { return a.number < b.number; });
+    return halves_at(part, part.items.size() / 2);
+}
+
+Parts cut_by_kind(const Part& part) {
+    std::uint32_t kind = RAYA_LINK_CONES;  // the lowest
+    for (const TreeItem& item : part.items) kind = std::min(kind, item.kind);
+    const auto others =
+        std::partition(part.items.begin(), part.items.end(), [&](const TreeItem& item) { return item.kind == kind; });
+    return halves_at(part, static_cast<std::size_t>(others - part.items.begin()));
+}
+
+Parts cut(const Part& part, std::uint32_t depth) {
+    if (part.items.size() <= RAYA_BVH_WIDTH) return cut_by_kind(part);
+    if (depth >= kEvenFrom) return even_halves(part);
+    const std::array<Scale, 3> scales = scales_of(part.items);
+    std::array<std::array<Bin, kBins>, 3> bins;
+    for (const TreeItem& item : part.items)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            Bin& bin = bins[axis][scales[axis].bin(middle(item, axis))];
+            extend(bin.box, item.box);
+            ++bin.items;
+        }
+    Cut best;
+    for (std::size_t axis = 0; axis < 3; ++axis) find_cut(best, axis, bins[axis]);
+    if (best.cost == kInfinity) return even_halves(part);
+    const auto others = std::partition(part.items.begin(), part.items.end(), [&](const TreeItem& item) {
+        return scales[best.axis].bin(middle(item, best.axis)) <= best.last;
+    });
+    return halves_at(part, static_cast<std::size_t>(others - part.items.begin()));
+}
+
+class TreeBuilder {
+  public:
+    explicit TreeBuilder(Tree& tree) : tree_(tree), first_(tree.items.data()) {}
+
+    TreeChild child(const Part& part, std::uint32_t depth) {
+        if (!part.is_leaf()) return {part.box, RAYA_LINK_NODE, node(part, depth), 0};
+        std::sort(part.items.begin(), part.items.end(),
+                  [](const TreeItem& a, const TreeItem& b) { return a.number < b.number; });
+        return {part.box, part.items[0].kind, static_cast<std::uint32_t>(part.items.data() - first_),
+                static_cast<std::uint32_t>(part.items.size())};
+    }
+
+  private:
+    // The children of a node: its part, of which the largest that is no leaf is cut until there are enough.
+    std::vector<Part> children_of(const Part& part, std::uint32_t depth) const {
+        std::vector<Part> parts = {part};
+        while (parts.size() < RAYA_BVH_WIDTH) {
+            Part* largest = nullptr;
+            for (Part& p : parts)
+                if (!p.is_leaf() && (!largest || area(p.box) > area(largest->box))) largest = &p;
+            if (!largest) break;
+            const Parts halves = cut(*largest, depth);
+            *largest = halves[0];
+            parts.push_back(halves[1]);
+        }
+        return parts;
+    }
+
+    std::uint32_t node(const Part& part, std::uint32_t depth) {
+        const auto number = static_cast<std::uint32_t>(tree_.nodes.size());
+        tree_.nodes.emplace_back();
+        tree_.depth = std::max(tree_.depth, depth + 1);
+        const std::vector<Part> parts = children_of(part, depth);
+        TreeNode made{};
+        for (const Part& p : parts) made.children[made.count++] = child(p, depth + 1);
+        tree_.nodes[number] = made;
+        return number;
+    }
+
+    Tree& tree_;
+    const TreeItem* first_;
+};
+
+}  // namespace
+
+Tree build_tree(std::vector<TreeItem> items) {
+    Tree tree;
+    tree.items = std::move(items);
+    if (!tree.items.empty()) tree.root = TreeBuilder(tree).child(part_of(tree.items), 0);
+    return tree;
+}
+
+}  // namespace raya

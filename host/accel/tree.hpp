@@ -1,0 +1,46 @@
+// A tree of boxes, up to sixteen children a node: built top down by the surface area heuristic (Goldsmith & Salmon
+// 1987; binned, Wald 2007; nodes with many children, Wald, Benthin & Boulos 2008).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/shared/bvh.h"
+
+namespace raya {
+
+/// A box in fp32.
+struct Bounds {
+    std::array<float, 3> low, high;
+};
+
+/// What a tree is built over.
+struct TreeItem {
+    Bounds box;
+    std::uint32_t number;  // of the object
+    std::uint32_t kind;    // RAYA_LINK_SPHERES, _POLYGONS or _CONES: a leaf has one
+};
+
+struct TreeChild {
+    Bounds box;
+    std::uint32_t kind;   // RAYA_LINK_*
+    std::uint32_t first;  // of a node: its number; of a leaf: its first item
+    std::uint32_t items;  // of a leaf: how many, 1..16
+};
+
+struct TreeNode {
+    std::array<TreeChild, RAYA_BVH_WIDTH> children;
+    std::uint32_t count;  // of them
+};
+
+struct Tree {
+    std::vector<TreeItem> items;  // in the order of the leaves, in each by number
+    std::vector<TreeNode> nodes;  // children behind their parents
+    TreeChild root{};             // of no meaning where there are no items
+    std::uint32_t depth = 0;      // nodes on the longest way down
+};
+
+/// The same tree for the same items on every machine.
+Tree build_tree(std::vector<TreeItem> items);
+
+}  // namespace raya

@@ -1,0 +1,87 @@
+// The tree of boxes: what every tree must hold to, whatever it is built over.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "host/accel/tree.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+TreeItem item_at(SplitMix& random, std::uint32_t number, double size, int way) {
+    TreeItem item{{}, number, RAYA_LINK_SPHERES + number % 3};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double at = way == 0   ? random.uniform(-1, 1)
+                          : way == 1 ? 0.25                                               // all in one place
+                          : way == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // ever closer
+                                     : number % 7;                                        // on few places
+        item.box.low[axis] = static_cast<float>(at - size);
+        item.box.high[axis] = static_cast<float>(at + size * random.uniform(0.5, 2));
+    }
+    return item;
+}
+
+bool holds(const Bounds& outer, const Bounds& inner) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (inner.low[axis] < outer.low[axis] || inner.high[axis] > outer.high[axis]) return false;
+    return true;
+}
+
+/// Goes down the tree, and complains. Returns the nodes on the longest way.
+std::uint32_t check_child(const Tree& tree, const TreeChild& child, std::multiset<std::uint32_t>& numbers) {
+    if (child.kind != RAYA_LINK_NODE) {
+        REQUIRE(child.items >= 1);
+        REQUIRE(child.items <= RAYA_BVH_WIDTH);
+        for (std::uint32_t i = child.first; i < child.first + child.items; ++i) {
+            CHECK(tree.items[i].kind == child.kind);
+            CHECK(holds(child.box, tree.items[i].box));
+            if (i > child.first) CHECK(tree.items[i].number > tree.items[i - 1].number);
+            numbers.insert(tree.items[i].number);
+        }
+        return 0;
+    }
+    const TreeNode& node = tree.nodes.at(child.first);
+    REQUIRE(node.count >= 2);
+    std::uint32_t depth = 0;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+        const TreeChild& below = node.children[i];
+        CHECK(holds(child.box, below.box));
+        if (below.kind == RAYA_LINK_NODE) CHECK(below.first > child.first);
+        depth = std::max(depth, check_child(tree, below, numbers));
+    }
+    return depth + 1;
+}
+
+TEST_CASE("every item is in one leaf of its kind, in boxes that hold it", "[tree]") {
+    for (unsigned seed = 1; seed <= quick_cases(60, 600); ++seed) {
+        SplitMix random(seed);
+        const int way = static_cast<int>(seed % 4);
+        const auto count = static_cast<std::uint32_t>(1 + random.next() % (seed % 5 == 0 ? 3000 : 100));
+        std::vector<TreeItem> items;
+        for (std::uint32_t i = 0; i < count; ++i) items.push_back(item_at(random, i, 0.01, way));
+        const Tree tree = build_tree(items);
+        CAPTURE(seed, count, way);
+        std::multiset<std::uint32_t> numbers;
+        CHECK(check_child(tree, tree.root, numbers) == tree.depth);
+        CHECK(numbers.size() == count);
+        CHECK(std::set<std::uint32_t>(numbers.begin(), numbers.end()).size() == count);
+        CHECK(tree.depth <= 40);
+        // The order in which items come is of no matter.
+        std::reverse(items.begin(), items.end());
+        const Tree again = build_tree(items);
+        REQUIRE(again.items.size() == tree.items.size());
+        for (std::size_t i = 0; i < count; ++i) CHECK(again.items[i].number == tree.items[i].number);
+    }
+}
+
+TEST_CASE("a tree over nothing is empty", "[tree]") {
+    const Tree tree = build_tree({});
+    CHECK(tree.items.empty());
+    CHECK(tree.nodes.empty());
+    CHECK(tree.depth == 0);
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,36 @@
+// Which operands of x86's floating-point unit were denormal: a flag that stays until it is cleared. On PoCL's basic
+// device kernels run in the thread that waits for them, so it tells of kernels too.
+#pragma once
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+#include <cstdlib>
+#include <string_view>
+
+namespace raya {
+
+/// Whether the tests that look for denormals can: on x86, with PoCL's basic device (POCL_DEVICES=basic).
+inline bool denormals_can_be_seen() {
+    const char* devices = std::getenv("POCL_DEVICES");
+#if defined(__x86_64__)
+    return devices != nullptr && std::string_view(devices) == "basic";
+#else
+    return false;
+#endif
+}
+
+/// Does `work` compute with a denormal number, as an operand?
+template <class Work>
+bool meets_denormals([[maybe_unused]] const Work& work) {
+#if defined(__x86_64__)
+    constexpr unsigned kAllFlags = 0x3f, kDenormal = 0x02;
+    _mm_setcsr(_mm_getcsr() & ~kAllFlags);
+    work();
+    return (_mm_getcsr() & kDenormal) != 0;
+#else
+    return false;
+#endif
+}
+
+}  // namespace raya

@@ -1,0 +1,24 @@
+// Lanes without a packet compute with ordinary numbers (tests/ring/test_denormals.cpp).
+#include <catch2/catch.hpp>
+
+#include "tests/kernels/denormals.hpp"
+#include "tests/torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+TEST_CASE("no lane of the torus's kernels computes with denormals", "[.][denormals]") {
+    REQUIRE(denormals_can_be_seen());
+    Session session(choose_device(""));
+    for (const std::string& name : project_scenes()) {
+        CAPTURE(name);
+        TorusCase c;
+        c.sources.more_options = {"-cl-opt-disable"};
+        TorusRenderer renderer(session, project_scene(name), settings_of(c));
+        renderer.render();  // PoCL compiles here
+        CHECK_FALSE(meets_denormals([&] { renderer.render(); }));
+    }
+}
+
+}  // namespace
+}  // namespace raya
