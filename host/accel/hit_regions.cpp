@@ -10,10 +10,11 @@
 // |l'|^2 <= r^2 (1 + 3u) + 3f. X - C = -l' +- root' D but for u (2n + r), and l'.D = b (1 - |D|^2) but for 6un, so
 // |X - C|^2 = r^2 but for 2r (s + 6u) n + r^2 (s + 5u) + 3f.
 //
-// Polygon N.x = d. The kernel finds the rounded (u, v) of X within the outline as it computes that, so X lies there but
-// for one rounding. Numerator and denominator of t' are off by 3u (|d| + |O|) and 3u, so X is off the plane by
-// 4u (|d| + |O|) + 4ut'. As a ray that does not move much in u and v moves along N, t' is bounded by how far the
-// outline and O are apart.
+// Polygon N.x = d. A corner as the ray sees it (kernels/geometry/polygon.clh) is off by 4un along each of the two axes,
+// an edge by un more, so the ray passes a point Q of the polygon within 8un. Where O + t'D is in the box of the corners
+// but for the kernel's margin, and the rounding of both, it is so here; else t' is where the ray enters or leaves that
+// box, between Q and the plane's t. Numerator and denominator of that are off by 3u (|d| + |O|) and 3u, so it lies off
+// the plane by 4u (|d| + |O|) + 4ut, and O + t'D by no more than that or Q.
 //
 // Cone, p = O - base. The ray's point nearest to the base, p' + m'D, is off by 3un along the ray and by 2un across it:
 // X shifts. From there on all is of size S, |start| + |t|. The coefficients' errors are errors of the quadratic's value
@@ -119,43 +120,23 @@ HitRegion HitRegions::sphere(std::size_t at) const {
     return region;
 }
 
-// How far a hit in the polygon's plane can be off it; `outline` is the largest coordinate of its outline.
-double HitRegions::plane_error(std::size_t at, double outline) const {
-    const double to_plane = std::abs(real(at + RAYA_PLANE_DISTANCE)) + std::sqrt(3.0) * reach_;
-    const double distance = 2 * (to_plane + 2 * (outline + reach_));
-    return 5 * unit_ * (to_plane + distance) + 4 * smallest_ * (1 + distance);
-}
-
 HitRegion HitRegions::polygon(std::size_t at) const {
     HitRegion region;
-    const auto axis = static_cast<int>((*words_)[at + RAYA_POLYGON_AXIS]);
-    const int across = (axis + 1) % 3, along = (axis + 2) % 3;
-    std::size_t edge = (*words_)[at + RAYA_POLYGON_EDGES_AT];
-    double inexact = 0;  // sum of what a border's rounding goes with
-    for (std::size_t edges = (*words_)[at + RAYA_POLYGON_EDGES]; edges > 0; --edges, edge += RAYA_EDGE_WORDS) {
-        const double u = real(edge + RAYA_EDGE_U), low = real(edge + RAYA_EDGE_LOW), high = real(edge + RAYA_EDGE_HIGH);
-        const double run = (high - low) * real(edge + RAYA_EDGE_SLOPE);
-        inexact = std::max({inexact, std::abs(u) + std::abs(run), std::abs(low), std::abs(high)});
-        for (const auto& [end_u, end_v] : {std::pair{u, low}, std::pair{u + run, high}}) {
-            Vec3 corner(0);
-            corner[across] = end_u;
-            corner[along] = end_v;
-            region.box.extendBy(corner);
-        }
-    }
-    widen(region.box, 4 * unit_ * inexact + 4 * smallest_);
     region.normal = vector(at + RAYA_PLANE_NORMAL);
     region.middle = real(at + RAYA_PLANE_DISTANCE);
-    region.half = plane_error(at, inexact);
-    // The third coordinate, from the plane over the outline's box. A polygon without area has no normal and no hits.
-    Vec3 slope = region.normal;
-    slope[axis] = 0;
-    const Vec3 middle = 0.5 * (region.box.min + region.box.max), arm = 0.5 * (region.box.max - region.box.min);
-    const double by_normal = region.normal[axis] != 0 ? 1 / region.normal[axis] : 0;
-    const double height = (region.middle - slope.dot(middle)) * by_normal;
-    const double deviation = (absolute(slope).dot(arm) + region.half) * std::abs(by_normal);
-    region.box.min[axis] = height - deviation;
-    region.box.max[axis] = height + deviation;
+    double bent = 0, away = 0;  // of the corners: farthest from the plane, largest distance from a ray's origin
+    std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
+    for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS) {
+        const Vec3 place = vector(corner);
+        region.box.extendBy(place);
+        bent = std::max(bent, std::abs(region.normal.dot(place) - region.middle));
+        away = std::max(away, farthest(place));
+    }
+    const double margin = 32 * unit_ * away;  // of the kernel; RAYA_MARGIN is 16 units or 8
+    const double aside = 16 * unit_ * away + 8 * std::sqrt(smallest_);
+    const double to_plane = std::abs(region.middle) + std::sqrt(3.0) * reach_;
+    widen(region.box, margin + aside);
+    region.half = 5 * unit_ * (to_plane + 2 * away) + 4 * smallest_ * (1 + away) + aside + bent;
     return region;
 }
 

@@ -60,7 +60,6 @@ class HitRegions {
     double farthest(const Vec3& place) const;
     HitRegion sphere(std::size_t at) const;
     HitRegion polygon(std::size_t at) const;
-    double plane_error(std::size_t at, double outline) const;
     HitRegion cone(std::size_t at) const;
     double cone_error(std::size_t at, double size) const;
     double cone_size(std::size_t at) const;

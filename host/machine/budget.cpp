@@ -65,16 +65,18 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .divisions = 1,
      .branches = 2,
      .why = "to t, which has to be known before the ray can be said to miss"},
-    // the plane's 7; half of the tests go on: (u, v: 2, four edges of two comparisons with v, one multiply-accumulate
-    // for the border, one comparison with it: 4 * 4) / 2. Moves: pointers to u, v, and the edges' counter and pointer,
-    // halved. Branches: the plane's 2, an edge's one for each, halved
+    // four corners, each minus O: 3, sheared: 2, v against 0: 1; two of the edges cross v = 0 and compare two products:
+    // 3;
+    // of twenty tests one goes on: (box: 4 * 3 + 4 * 6, plane: 7, t D: 3, in the box: 6) / 20. Moves: the corners'
+    // counter
+    // and pointer. Branches: an edge's one for each, inside
     {.event = RAYA_POLYGON_TESTS,
-     .multiply_accumulates = 3 + 3 + 1 + (2 + 4 * 4) / 2,
-     .divisions = 1,
-     .moves = (2 + 2) / 2,
-     .branches = 2 + 4 / 2,
-     .why = "its plane's, and for every second test an outline of four edges (0.47 of the tests and 3.5 edges in "
-            "scenes/polygons.nff, by Oclgrind's counts)"},
+     .multiply_accumulates = 4 * (3 + 2 + 1) + 2 * 3 + (12 + 24 + 7 + 3 + 6) / 20,
+     .moves = 2,
+     .branches = 4 + 1,
+     .why = "an outline of four edges (3.5 in scenes/polygons.nff), and for one test in twenty its plane; without the "
+            "ray's "
+            "own two divisions, once for all its polygons"},
     // X - base: 3, to the nearest point: 3 + 3, z: 3, dz: 3, side: 3, dside: 3, radius: 1, dradius: 1, a: 1 + 3,
     // b: 1 + 3, c: 1 + 3, discriminant: 2; a third of the tests goes on: (q, z and t twice, against 0, h and the
     // nearest: 9) / 3, a root and two divisions, as one division. Branches: passes by, and a third of three

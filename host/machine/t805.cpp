@@ -34,10 +34,11 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_SPHERE_TESTS, .additions = 3 + 2 + 3 + 3, .multiplications = 0 + 3 + 3 + 3},
     // n.D, d - n.O, t against the nearest so far
     {.event = RAYA_PLANE_TESTS, .additions = 2 + 3 + 1, .multiplications = 3 + 3},
-    // the plane's, and half of (u, v, four edges of three comparisons and a border)
+    // four corners minus O, sheared, against 0; two edges of two products and a comparison; a twentieth of the box and
+    // the plane
     {.event = RAYA_POLYGON_TESTS,
-     .additions = 2 + 3 + 1 + (2 + 4 * (3 + 1)) / 2,
-     .multiplications = 3 + 3 + (2 + 4) / 2},
+     .additions = 4 * (3 + 2 + 1) + 2 * 1 + (12 + 24 + 2 + 3 + 6) / 20,
+     .multiplications = 4 * 2 + 2 * 2 + (3 + 3 + 3) / 20},
     // X - base, to the nearest point, z, dz, side, dside, radius, dradius, a, b, c, discriminant; a third of (q, z and
     // t
     // twice, four comparisons)

@@ -96,14 +96,10 @@ struct Point2 {
 
 Point2 outline_point(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-void pack_edges(Words& words, const Face& face, int axis) {
-    for (std::size_t i = 0; i < face.corners.size(); ++i) {
-        Point2 low = outline_point(face.polygon->vertices[face.corners[i]], axis);
-        Point2 high = outline_point(face.polygon->vertices[face.corners[(i + 1) % face.corners.size()]], axis);
-        if (low.v > high.v) std::swap(low, high);  // neighbours that share an edge then compute the same border
-        const double slope = high.v > low.v ? (high.u - low.u) / (high.v - low.v) : 0;
-        for (const double length : {low.u, low.v, high.v}) put_length(words, length);
-        put(words, slope);
+void pack_corners(Words& words, const Face& face) {
+    for (const int corner : face.corners) {
+        put_length(words, face.polygon->vertices[static_cast<std::size_t>(corner)]);
+        put(words, 0);
     }
 }
 
@@ -136,7 +132,7 @@ void pack_faces(Words& words, const std::vector<Face>& faces, const std::vector<
         put_index(record, axis);
         put_index(record, faces[i].corners.size());
         put_index(record, words.size());
-        pack_edges(words, faces[i], axis);
+        pack_corners(words, faces[i]);
         put_index(record, polygon.normals.empty() ? 0 : words.size());
         if (!polygon.normals.empty()) pack_patch(words, faces[i], axis);
         std::copy(record.begin(), record.end(),

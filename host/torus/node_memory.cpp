@@ -48,7 +48,7 @@ class JobParts {
 };
 
 std::size_t outline_words(const std::uint32_t* polygon) {
-    return polygon[RAYA_POLYGON_EDGES] * RAYA_EDGE_WORDS +
+    return polygon[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS +
            (polygon[RAYA_POLYGON_NORMALS_AT] != 0 ? RAYA_PATCH_WORDS : 0);
 }
 
@@ -189,8 +189,8 @@ class NodePacker {
         for (const std::uint32_t number : polygons) append_object(job_.object(number), RAYA_POLYGON_WORDS);
         for (const std::uint32_t number : polygons) {
             const std::uint32_t* const polygon = job_.object(number);
-            (*to_)[record + RAYA_POLYGON_EDGES_AT] = here();
-            append_words(job_.at(polygon[RAYA_POLYGON_EDGES_AT]), polygon[RAYA_POLYGON_EDGES] * RAYA_EDGE_WORDS);
+            (*to_)[record + RAYA_POLYGON_CORNERS_AT] = here();
+            append_words(job_.at(polygon[RAYA_POLYGON_CORNERS_AT]), polygon[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS);
             if (polygon[RAYA_POLYGON_NORMALS_AT] != 0) {
                 (*to_)[record + RAYA_POLYGON_NORMALS_AT] = here();
                 append_words(job_.at(polygon[RAYA_POLYGON_NORMALS_AT]), RAYA_PATCH_WORDS);

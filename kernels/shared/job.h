@@ -66,16 +66,15 @@ enum {  // words of a plane n.x = d
 };
 
 enum {  // words of a polygon: those of its plane, and
-    RAYA_POLYGON_AXIS = RAYA_OBJECT_WORDS,  // 0..2: the coordinate that its outline drops
-    RAYA_POLYGON_EDGES,                     // how many edges
-    RAYA_POLYGON_EDGES_AT,                  // where they start
+    RAYA_POLYGON_AXIS = RAYA_OBJECT_WORDS,  // 0..2: the coordinate that its normals, and a checker, drop
+    RAYA_POLYGON_CORNERS,                   // how many corners
+    RAYA_POLYGON_CORNERS_AT,                // where they start
     RAYA_POLYGON_NORMALS_AT,                // where the normals of a patch start, 0 for a polygon
     RAYA_POLYGON_WORDS
 };
 
-// An edge of an outline in the coordinates (u, v) that follow the dropped one: (1, 2), (2, 0) or (0, 1). LOW and HIGH
-// are its ends' v as they come round the outline, u = U + (v - LOW) SLOPE on it.
-enum { RAYA_EDGE_U = 0, RAYA_EDGE_LOW = 1, RAYA_EDGE_HIGH = 2, RAYA_EDGE_SLOPE = 3, RAYA_EDGE_WORDS = 4 };
+// A corner of an outline: x y z, and a word that makes it a row.
+enum { RAYA_CORNER_WORDS = 4 };
 
 // Shading normal of a patch: N0 + (u - u0) NU + (v - v0) NV, unnormalised.
 enum { RAYA_PATCH_ORIGIN = 0, RAYA_PATCH_N0 = 2, RAYA_PATCH_NU = 5, RAYA_PATCH_NV = 8, RAYA_PATCH_WORDS = 11 };

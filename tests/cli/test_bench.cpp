@@ -123,7 +123,7 @@ TEST_CASE("bench --ways times whole renders with and without a grid and on the t
     }
     CHECK_THAT(rows[1]["array"].get<std::string>(), Catch::StartsWith("4x4x4 nodes"));
     const ScratchFolder empty;
-    check_refused(empty, {"bench", "--ways", "grid,octree"}, 2, {"--ways octree", "none, grid or torus"});
+    check_refused(empty, {"bench", "--ways", "grid,octree"}, 2, {"--ways octree", "none, grid, bvh or torus"});
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST_CASE("cycles of one event, counted by hand", "[machine]") {
     const auto cycles = cycles_of_events();
     CHECK(cycles[RAYA_SPHERE_TESTS] == 12 + 3);        // three dot products' worth and a difference; one branch
     CHECK(cycles[RAYA_PLANE_TESTS] == 7 + 6 + 2 * 3);  // two dot products, a comparison; a division; two branches
-    CHECK(cycles[RAYA_POLYGON_TESTS] == 16 + 6 + 2 + 4 * 3);  // the plane's and nine more; two moves; four branches
+    CHECK(cycles[RAYA_POLYGON_TESTS] == 24 + 6 + 2 + 2 + 5 * 3);  // corners, edges, plane; two moves; five branches
     CHECK(cycles[RAYA_CONE_TESTS] == 40 + 6 + 2 * 3);
     CHECK(cycles[RAYA_SHADOW] == 12 + 6 + 8 + 4 + 5 * 3);
     CHECK(cycles[RAYA_SHADOW_HITS] == 3 + 8 + 2 * 3);

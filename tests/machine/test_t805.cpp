@@ -46,7 +46,7 @@ TEST_CASE("cycles of one event on a T805, counted by hand", "[machine]") {
     CHECK(cycles[RAYA_SPHERE_TESTS] == arithmetic(11, 9) + control(0, 1));
     // n.D: 3 products, 2 additions; d - n.O: 3 and 3; a comparison; a division; two branches
     CHECK(cycles[RAYA_PLANE_TESTS] == arithmetic(6, 6, 1) + control(0, 2));
-    CHECK(cycles[RAYA_POLYGON_TESTS] == arithmetic(6 + 9, 6 + 3, 1) + control(2, 4));
+    CHECK(cycles[RAYA_POLYGON_TESTS] == arithmetic(26 + 2, 12 + 0, 0) + control(2, 5));
     CHECK(cycles[RAYA_SHADOW] == arithmetic(7, 9, 1, 1) + control(4, 5, 16));
     CHECK(cycles[RAYA_PRIMARY] == arithmetic(8, 12, 1, 1) + control(16, 3, 16));
     CHECK(cycles[RAYA_REFLECTED] == arithmetic(0, 1) + control(10, 2, 16));

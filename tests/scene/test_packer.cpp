@@ -115,8 +115,8 @@ class JobCheck {
             CHECK(packed_.real(at + RAYA_PLANE_DISTANCE) == fp32(normal.normalized().dot(polygon.vertices[0])));
             CHECK(packed_.index(at + RAYA_POLYGON_AXIS) == static_cast<std::uint32_t>(dropped_axis(normal)));
             check_surface(polygon.surface, at);
-            REQUIRE(packed_.index(at + RAYA_POLYGON_EDGES) == corners.size());
-            check_outline(polygon, corners, packed_.index(at + RAYA_POLYGON_EDGES_AT));
+            REQUIRE(packed_.index(at + RAYA_POLYGON_CORNERS) == corners.size());
+            check_outline(polygon, corners, packed_.index(at + RAYA_POLYGON_CORNERS_AT));
             const std::size_t normals_at = packed_.index(at + RAYA_POLYGON_NORMALS_AT);
             REQUIRE((normals_at == 0) == polygon.normals.empty());
             if (normals_at != 0) check_normals(polygon, corners, normals_at);
@@ -139,22 +139,11 @@ class JobCheck {
         return polygon.vertices[static_cast<std::size_t>(corner)];
     }
 
-    /// One edge between two vertices, whichever of them is the lower one.
-    bool is_edge(Point2 a, Point2 b, std::size_t at) {
-        const double u = packed_.real(at + RAYA_EDGE_U), low = packed_.real(at + RAYA_EDGE_LOW);
-        const double high = packed_.real(at + RAYA_EDGE_HIGH), slope = packed_.real(at + RAYA_EDGE_SLOPE);
-        if (a.v > b.v) std::swap(a, b);
-        if (low != fp32(a.v) || high != fp32(b.v)) return false;
-        if (a.v == b.v) return slope == 0;  // level: no line towards larger u crosses it
-        return u == fp32(a.u) && std::abs(u + (high - low) * slope - b.u) <= limit_;
-    }
-
-    void check_outline(const Polygon& polygon, const std::vector<int>& corners, std::size_t edges_at) {
-        const int axis = dropped_axis(newell_normal(polygon.vertices));
+    void check_outline(const Polygon& polygon, const std::vector<int>& corners, std::size_t corners_at) {
         for (std::size_t i = 0; i < corners.size(); ++i) {
-            const Vec3 from = vertex(polygon, corners[i]), to = vertex(polygon, corners[(i + 1) % corners.size()]);
             CAPTURE(i);
-            CHECK(is_edge(flattened(from, axis), flattened(to, axis), edges_at + i * RAYA_EDGE_WORDS));
+            CHECK(packed_.vector(corners_at + i * RAYA_CORNER_WORDS) == fp32(vertex(polygon, corners[i])));
+            CHECK(packed_.real(corners_at + i * RAYA_CORNER_WORDS + 3) == 0);
         }
     }
 
@@ -228,7 +217,7 @@ TEST_CASE("patches become triangles, polygons stay whole", "[packer]") {
     CHECK(PackedScene(packed.words()).job().objects.polygons == 2 + 1 + 1);
     CHECK((packed.has_polygons() && packed.has_patches() && !packed.has_cones()));
     const std::size_t words = sizeof(raya_job) / 4 + 2 * RAYA_SURFACE_WORDS + 4 * RAYA_POLYGON_WORDS +
-                              (3 + 3 + 3 + 4) * RAYA_EDGE_WORDS + 3 * RAYA_PATCH_WORDS;
+                              (3 + 3 + 3 + 4) * RAYA_CORNER_WORDS + 3 * RAYA_PATCH_WORDS;
     CHECK(packed.words().size() == words);
 }
 

@@ -57,16 +57,16 @@ class NodeCheck {
     const raya_job& header() const { return header_; }
 
   private:
-    // Compares edges and normals, then makes the two "at" words alike.
+    // Compares corners and normals, then makes the two "at" words alike.
     void outline(Words& own, const Words& theirs) {
-        const std::size_t edges = theirs[RAYA_POLYGON_EDGES] * RAYA_EDGE_WORDS;
-        if (node_.section(own[RAYA_POLYGON_EDGES_AT], edges) != job_section(theirs[RAYA_POLYGON_EDGES_AT], edges))
-            FAIL("edges");
+        const std::size_t corners = theirs[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
+        if (node_.section(own[RAYA_POLYGON_CORNERS_AT], corners) != job_section(theirs[RAYA_POLYGON_CORNERS_AT], corners))
+            FAIL("corners");
         if ((own[RAYA_POLYGON_NORMALS_AT] == 0) != (theirs[RAYA_POLYGON_NORMALS_AT] == 0)) FAIL("polygon or patch");
         if (theirs[RAYA_POLYGON_NORMALS_AT] != 0 && node_.section(own[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS) !=
                                                         job_section(theirs[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS))
             FAIL("normals");
-        own[RAYA_POLYGON_EDGES_AT] = theirs[RAYA_POLYGON_EDGES_AT];
+        own[RAYA_POLYGON_CORNERS_AT] = theirs[RAYA_POLYGON_CORNERS_AT];
         own[RAYA_POLYGON_NORMALS_AT] = theirs[RAYA_POLYGON_NORMALS_AT];
     }
 
@@ -212,7 +212,7 @@ TEST_CASE("nodes hold the same on a 2-D torus as on a 3-D one", "[torus]") {
 
 TEST_CASE("more words than 32-bit numbers reach are refused before they are made", "[torus]") {
     Scene scene = empty_scene();
-    Polygon disc;  // 100,000 edges, 400,000 words, in each of 4,096 voxels
+    Polygon disc;  // 100,000 corners, 400,000 words, in each of 4,096 voxels
     for (int i = 0; i < 100'000; ++i) disc.vertices.emplace_back(std::cos(i * 6.28e-5), std::sin(i * 6.28e-5), 0);
     scene.polygons.push_back(disc);
     const PackedJob job = pack(scene);
