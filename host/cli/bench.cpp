@@ -146,7 +146,7 @@ void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
     if (parsed.count("--tolerance") > 0 && command.baseline.empty())
         throw UserError("--tolerance says what --compare puts up with: give --compare FILE.json as well");
     if (!command.ways.empty() && parsed.count("--accel") > 0)
-        throw UserError("--accel with --ways: the ways none and grid say which; leave --accel out");
+        throw UserError("--accel with --ways: the ways none, grid and bvh say which; leave --accel out");
     if (command.ways.empty() || command.ways != std::vector<std::string>(command.ways.size(), "torus")) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
         if (parsed.count(option) > 0)
@@ -198,7 +198,7 @@ void add_bench_command(CLI::App& program) {
     add_render_options(*command, options->render);
     add_value(*command, "--ways", options->ways,
               "Time whole renders in place of the trace kernel, in these ways, with commas between them: none, "
-              "grid: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
+              "grid, bvh: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
               "is what the others are held against")
         ->delimiter(',')
         ->type_name("none,grid,torus");

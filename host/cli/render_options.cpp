@@ -64,10 +64,10 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->default_str("axes");
     add_value(
         command, "--accel", o.accel,
-        "grid: rays walk through voxels inside each PE's memory and meet the objects listed there, the same hits "
-        "sooner, from some 200 objects on (fp32; 400 in a reduced format) and slower below; A x B x C voxels along x, "
-        "y, z, by default some for each object; none: every ray is tested against all objects")
-        ->type_name("none|grid[:AxBxC]")
+        "How rays find what they hit, always the same: none: every ray is tested against all objects; bvh: it goes "
+        "down a tree of boxes in each PE's memory, sooner from some 100 objects on; grid: it walks through voxels and "
+        "meets the objects listed there, A x B x C of them along x, y, z, by default some for each object")
+        ->type_name("none|bvh|grid[:AxBxC]")
         ->capture_default_str();
     add_value(command, "--pe-memory", o.pe_memory,
               "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "

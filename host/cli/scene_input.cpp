@@ -39,7 +39,7 @@ SceneInput read_scene(const std::string& file, bool strict) {
 void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings) {
     constexpr std::size_t kMany = 100'000;
     if (accelerated || scene.object_count() < kMany) return;
-    warnings.add(fmt::format("{}: every ray is tested against {} objects; --accel grid finds the same hits sooner",
+    warnings.add(fmt::format("{}: every ray is tested against {} objects; --accel bvh finds the same hits sooner",
                              scene.name, scene.object_count()));
 }
 

@@ -179,10 +179,14 @@ std::vector<Rendering> usual_renderings() {
          .refined = true},
         {.picture = "ties fp32"},
         {.picture = "ties fp32", .accel = AccelKind::kGrid},
+        {.picture = "ties fp32", .accel = AccelKind::kBvh},
         {.picture = "ties fp32", .torus = true},
         {.picture = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
         {.picture = "polygons fp32", .quick = true, .accel = AccelKind::kGrid},
         {.picture = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
+        {.picture = "polygons fp32", .quick = true, .accel = AccelKind::kBvh},
+        {.picture = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
+        {.picture = "cones fp32", .accel = AccelKind::kBvh},
         {.picture = "polygons fp32", .quick = true, .torus = true},
         {.picture = "polygons fp32", .torus = true, .global_words = true},
         {.picture = "polygons fp32", .quick = true, .torus = true, .nodes = {3, 2, 2}, .links = k2d, .inject = kRoot},
@@ -198,6 +202,8 @@ std::vector<Rendering> usual_renderings() {
         {.picture = "glass e8m21"},
         {.picture = "mirrors spa22", .torus = true, .links = k2d},
         {.picture = "polygons spa22", .accel = AccelKind::kGrid},
+        {.picture = "polygons spa22", .accel = AccelKind::kBvh},
+        {.picture = "spheres e8m12t", .accel = AccelKind::kBvh},
         {.picture = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
         {.picture = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
 }
@@ -212,6 +218,7 @@ std::vector<Rendering> all_builds() {
                 all.push_back({.picture = picture, .lanes = lanes, .group_size = group});
             for (const char* picture : {"polygons fp32", "polygons spa22"}) {
                 all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .accel = AccelKind::kGrid});
+                all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .accel = AccelKind::kBvh});
                 all.push_back({.picture = picture, .lanes = lanes, .group_size = group, .torus = true});
             }
             all.push_back({.picture = "glass fp32 filter", .lanes = lanes, .group_size = group});

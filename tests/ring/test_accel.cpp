@@ -99,7 +99,7 @@ Scene crowded_scene(std::uint64_t seed) {
 TEST_CASE("crowds of objects of all sizes look alike with a tree", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE("fp32", "spa22");
-    for (unsigned seed = 1; seed <= quick_cases(4, 200); ++seed) {
+    for (unsigned seed = 1; seed <= quick_cases(2, 200); ++seed) {
         Scene scene = crowded_scene(seed);
         if (seed % 3 == 0) scene.view.from = scene.view.at - Vec3(0, 0, 8);  // along an axis
         const RingCase c{.width = 24, .height = 20, .pes = 6, .bounces = 3, .format = format};
@@ -306,7 +306,7 @@ TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel]") {
          "h.object != RAYA_NO_OBJECT ? RAYA_NO_LINK"},
         {"bvh/leaves.clh", "number < h->object;", "number > h->object;"},
         {"bvh/descent.clh", "m & mask_not(done);", "m & mask_not(done) & (r.direction.x > 0.0f);"}};
-    for (const SourcePatch& fault : faults) {
+    for (const SourcePatch& fault : quick_of(3, faults)) {
         settings.kernels.sources.patches = {fault};
         check_patches(settings.kernels.sources);
         CAPTURE(fault.file, fault.replace);
