@@ -18,7 +18,7 @@ struct Bounds {
 struct TreeItem {
     Bounds box;
     std::uint32_t number;  // of the object
-    std::uint32_t kind;    // RAYA_LINK_SPHERES, _POLYGONS or _CONES: a leaf has one
+    std::uint32_t kind;    // RAYA_LINK_SPHERES, _FACES, _POLYGONS or _CONES: a leaf has one
 };
 
 struct TreeChild {

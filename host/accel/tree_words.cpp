@@ -56,12 +56,24 @@ double reach_for(const PackedJob& job, const NumberFormat& format) {
     return reach;
 }
 
-std::uint32_t kind_of(const raya_objects& objects, std::uint32_t number) {
-    if (number < objects.spheres) return RAYA_LINK_SPHERES;
-    return number < objects.spheres + objects.planes + objects.polygons ? RAYA_LINK_POLYGONS : RAYA_LINK_CONES;
+const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number) {
+    const raya_objects& objects = job.header().objects;
+    const std::size_t polygon = number - objects.spheres - objects.planes;
+    return job.words().data() + objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
 }
 
-std::uint32_t rows_of(std::uint32_t kind) { return kind == RAYA_LINK_SPHERES ? RAYA_BVH_SPHERES : 1; }
+std::uint32_t kind_of(const PackedJob& job, std::uint32_t number) {
+    const raya_objects& objects = job.header().objects;
+    if (number < objects.spheres) return RAYA_LINK_SPHERES;
+    if (number >= objects.spheres + objects.planes + objects.polygons) return RAYA_LINK_CONES;
+    const bool is_face = polygon_words(job, number)[RAYA_POLYGON_CORNERS] <= RAYA_BVH_MOST_CORNERS;
+    return is_face ? RAYA_LINK_FACES : RAYA_LINK_POLYGONS;
+}
+
+std::uint32_t rows_of(std::uint32_t kind) {
+    if (kind == RAYA_LINK_SPHERES) return RAYA_BVH_SPHERES;
+    return kind == RAYA_LINK_FACES ? RAYA_BVH_FACES : 1;
+}
 
 // Lays a tree out row by row: a node, what its children hold, and so on.
 class TreeWriter {
@@ -110,10 +122,22 @@ class TreeWriter {
     }
 
     void put_object(std::uint32_t row, std::uint32_t column, std::uint32_t kind, std::uint32_t number) {
-        word(row + (kind == RAYA_LINK_SPHERES ? RAYA_BVH_NUMBERS : 0), column) = number;
-        if (kind != RAYA_LINK_SPHERES) return;
-        const std::size_t sphere = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
-        for (std::uint32_t w = 0; w < RAYA_BVH_NUMBERS; ++w) word(row + w, column) = job_.words()[sphere + w];
+        word(row + rows_of(kind) - 1, column) = number;  // in the last row
+        if (kind == RAYA_LINK_SPHERES) {
+            const std::size_t sphere = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
+            for (std::uint32_t w = 0; w < RAYA_BVH_NUMBERS; ++w) word(row + w, column) = job_.words()[sphere + w];
+        }
+        if (kind == RAYA_LINK_FACES) put_face(row, column, polygon_words(job_, number));
+    }
+
+    void put_face(std::uint32_t row, std::uint32_t column, const std::uint32_t* polygon) {
+        const std::uint32_t* corners = job_.words().data() + polygon[RAYA_POLYGON_CORNERS_AT];
+        const std::uint32_t last = polygon[RAYA_POLYGON_CORNERS] - 1;
+        for (std::uint32_t i = 0; i < RAYA_BVH_MOST_CORNERS; ++i)
+            for (std::uint32_t axis = 0; axis < 3; ++axis)
+                word(row + RAYA_BVH_CORNERS + 3 * i + axis, column) =
+                    corners[std::min(i, last) * RAYA_CORNER_WORDS + axis];
+        for (std::uint32_t w = 0; w < 4; ++w) word(row + RAYA_BVH_PLANE + w, column) = polygon[RAYA_PLANE_NORMAL + w];
     }
 
     const Tree& tree_;
@@ -132,8 +156,7 @@ TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
     all.items.reserve(regions.size());
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const std::uint32_t number = regions.number(i);
-        all.items.push_back(
-            {bounds_of(regions.region(i).box, all.reach), number, kind_of(job.header().objects, number)});
+        all.items.push_back({bounds_of(regions.region(i).box, all.reach), number, kind_of(job, number)});
     }
     return all;
 }

@@ -1,9 +1,10 @@
 // A tree of boxes over a scene's finite objects, as it lies behind a job's words.
 //
 // Rows of 16 words: what sixteen lanes read at once. A node is RAYA_BVH_NODE rows, one column for each child: its box,
-// and a link to what it holds. A leaf of spheres is RAYA_BVH_SPHERES rows, one column a sphere; a leaf of other objects
-// is a row of their numbers. Columns of a node that no child has hold a box that no ray meets; columns of a leaf beyond
-// its last object repeat the first.
+// and a link to what it holds. A leaf of spheres is RAYA_BVH_SPHERES rows, one column a sphere; one of polygons of
+// three or four corners is RAYA_BVH_FACES rows, one column a polygon; a leaf of other objects is a row of their
+// numbers. Columns of a node that no child has hold a box that no ray meets; columns of a leaf beyond its last object
+// repeat the first.
 #ifndef RAYA_SHARED_BVH_H
 #define RAYA_SHARED_BVH_H
 #include "kernels/shared/portable.h"
@@ -32,12 +33,21 @@ enum {  // rows of a leaf of spheres: the words of their objects (kernels/shared
     RAYA_BVH_SPHERES = 5
 };
 
-// A link: the kind of what it leads to in bits 30..31, a leaf's objects - 1 in bits 26..29, the first row in bits
-// 0..25.
-#define RAYA_LINK_ROW 0x03ffffffu
-#define RAYA_LINK_OBJECTS_SHIFT 26u
-#define RAYA_LINK_KIND_SHIFT 30u
-enum { RAYA_LINK_NODE, RAYA_LINK_SPHERES, RAYA_LINK_POLYGONS, RAYA_LINK_CONES };
+enum {  // rows of a leaf of polygons: x, y, z of each corner, the third one twice where there is no fourth; their
+        // planes
+    RAYA_BVH_CORNERS = 0,
+    RAYA_BVH_PLANE = 12,
+    RAYA_BVH_FACE_NUMBERS = 16,
+    RAYA_BVH_FACES = 17
+};
+#define RAYA_BVH_MOST_CORNERS 4
+
+// A link: the kind of what it leads to in bits 29..31, a leaf's objects - 1 in bits 25..28, the first row in bits
+// 0..24.
+#define RAYA_LINK_ROW 0x01ffffffu
+#define RAYA_LINK_OBJECTS_SHIFT 25u
+#define RAYA_LINK_KIND_SHIFT 29u
+enum { RAYA_LINK_NODE, RAYA_LINK_SPHERES, RAYA_LINK_FACES, RAYA_LINK_POLYGONS, RAYA_LINK_CONES };
 #define RAYA_NO_LINK 0xffffffffu  // of a tree without objects
 
 RAYA_SHARED_FUNCTION raya_u32 raya_link(raya_u32 kind, raya_u32 objects, raya_u32 row) {

@@ -19,7 +19,7 @@ RingResult render_with(Session& session, const Scene& scene, const RingCase& c, 
     return RingRenderer(session, scene, settings).render();
 }
 
-const Accel kAutomatic{.kind = AccelKind::kGrid, .divisions = {}}, kTree{.kind = AccelKind::kBvh, .divisions = {}};
+const Accel automatic_grid{.kind = AccelKind::kGrid, .divisions = {}}, bvh{.kind = AccelKind::kBvh, .divisions = {}};
 
 Accel cut(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return {.kind = AccelKind::kGrid, .divisions = Divisions{a, b, c}};
@@ -40,7 +40,7 @@ TEST_CASE("a grid or a tree changes no bit of the image, whatever its voxels and
     const Scene scene = project_scene(name);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .format = format};
     const std::string expected = answer_of(render_with(session, scene, c, {}));
-    for (const Accel& accel : {kTree, kAutomatic, cut(1, 1, 1), cut(7, 3, 5), cut(1, 40, 2), cut(24, 24, 24)}) {
+    for (const Accel& accel : {bvh, automatic_grid, cut(1, 1, 1), cut(7, 3, 5), cut(1, 40, 2), cut(24, 24, 24)}) {
         CAPTURE(name, format, accel_text(accel));
         const RingResult result = render_with(session, scene, c, accel);
         CHECK(answer_of(result) == expected);
@@ -61,8 +61,8 @@ TEST_CASE("scenes of all kinds of objects look alike with a grid or a tree, in c
         CAPTURE(seed, format, a, b, d);
         const std::string expected = answer_of(render_with(session, scene, c, {}));
         CHECK(answer_of(render_with(session, scene, c, cut(a, b, d))) == expected);
-        CHECK(answer_of(render_with(session, scene, c, kAutomatic)) == expected);
-        CHECK(answer_of(render_with(session, scene, c, kTree)) == expected);
+        CHECK(answer_of(render_with(session, scene, c, automatic_grid)) == expected);
+        CHECK(answer_of(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("crowds of objects of all sizes look alike with a tree", "[ring][accel
         if (seed % 3 == 0) scene.view.from = scene.view.at - Vec3(0, 0, 8);  // along an axis
         const RingCase c{.width = 24, .height = 20, .pes = 6, .bounces = 3, .format = format};
         CAPTURE(seed, format);
-        CHECK(answer_of(render_with(session, scene, c, kTree)) == answer_of(render_with(session, scene, c, {})));
+        CHECK(answer_of(render_with(session, scene, c, bvh)) == answer_of(render_with(session, scene, c, {})));
     }
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("tests and steps are counted for each ray, whatever lanes, groups and 
     Session session(choose_device(""));
     const Scene scene = project_scene("polygons");
     const std::string format = GENERATE("fp32", "spa22");
-    const Accel accel = GENERATE_COPY(cut(5, 4, 6), kTree);
+    const Accel accel = GENERATE_COPY(cut(5, 4, 6), bvh);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .lanes = 1, .group = 1, .format = format};
     const EventCounts expected = render_with(session, scene, c, accel).all.events;
     CHECK(expected[RAYA_STEPS] > 0);
@@ -181,8 +181,8 @@ TEST_CASE("of objects at equal distances the lowest number is hit, in whichever 
         CAPTURE(seed, format);
         CHECK(answer_of(render_with(session, scene, c, cut(1, 1, 1))) == expected);
         CHECK(answer_of(render_with(session, scene, c, cut(8, 5, 7))) == expected);
-        CHECK(answer_of(render_with(session, scene, c, kAutomatic)) == expected);
-        CHECK(answer_of(render_with(session, scene, c, kTree)) == expected);
+        CHECK(answer_of(render_with(session, scene, c, automatic_grid)) == expected);
+        CHECK(answer_of(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
@@ -212,12 +212,12 @@ TEST_CASE("of a plane, a polygon held apart and listed ones at equal distances t
         if (!plane) scene.planes.clear();
         const RingCase c{.width = 32, .height = 24, .pes = 8};
         const std::string expected = answer_of(render_with(session, scene, c, {}));
-        const RingResult grid = render_with(session, scene, c, kAutomatic);
+        const RingResult grid = render_with(session, scene, c, automatic_grid);
         CAPTURE(plane);
         CHECK(answer_of(grid) == expected);
         CHECK(grid.accel->apart == 1);
         CHECK(answer_of(render_with(session, scene, c, cut(9, 9, 3))) == expected);
-        CHECK(answer_of(render_with(session, scene, c, kTree)) == expected);
+        CHECK(answer_of(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
@@ -243,7 +243,7 @@ TEST_CASE("a hit where a ray ends is none, in whichever voxel it is found", "[ri
     const RingResult plain = render_with(session, scene, c, {});
     CHECK(plain.all.events[RAYA_SHADOW_HITS] > 0);
     CHECK(plain.all.events[RAYA_LIT] > 0);
-    for (const Accel& accel : {kTree, kAutomatic, cut(5, 6, 7), cut(3, 2, 16)}) {
+    for (const Accel& accel : {bvh, automatic_grid, cut(5, 6, 7), cut(3, 2, 16)}) {
         CAPTURE(format, accel_text(accel));
         CHECK(answer_of(render_with(session, scene, c, accel)) == answer_of(plain));
     }
@@ -254,23 +254,23 @@ TEST_CASE("supersampling through a grid or a tree gives the same pixels", "[ring
     RingCase c{.width = 32, .height = 24, .pes = 8};
     c.antialias.method = AntialiasMethod::kSupersample;
     const Scene scene = project_scene("centre");
-    const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, kAutomatic);
+    const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, automatic_grid);
     CHECK(plain.recomputed > 0);
     CHECK(answer_of(grid) == answer_of(plain));
-    CHECK(answer_of(render_with(session, scene, c, kTree)) == answer_of(plain));
+    CHECK(answer_of(render_with(session, scene, c, bvh)) == answer_of(plain));
 }
 
 TEST_CASE("a grid or a tree saves nearly all tests of many small spheres", "[ring][accel]") {
     Session session(choose_device(""));
     const Scene scene = generate_balls(3);
     const RingCase c{.width = 48, .height = 48, .pes = 48};
-    const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, kAutomatic);
+    const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, automatic_grid);
     CHECK(answer_of(grid) == answer_of(plain));
     REQUIRE(grid.accel);
     CHECK(grid.accel->apart == 1);  // the ground
     CHECK(tests_of(plain.all.events) > 20 * tests_of(grid.all.events));
     CHECK(grid.pe_memory.job_words == plain.pe_memory.job_words + grid.accel->words);
-    const RingResult tree = render_with(session, scene, c, kTree);
+    const RingResult tree = render_with(session, scene, c, bvh);
     CHECK(answer_of(tree) == answer_of(plain));
     CHECK(tests_of(plain.all.events) > 20 * tests_of(tree.all.events));
     CHECK(tree.pe_memory.job_words == plain.pe_memory.job_words + tree.accel->words);
@@ -286,7 +286,7 @@ TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel]") {
         for (const Sphere& s : spheres) copies.spheres.push_back({s.centre, 1, i < 7 ? 0 : 1});
     const std::vector<Scene> scenes = {crowded_scene(2), copies};
     RingSettings settings = raya::settings_of({.width = 24, .height = 20, .pes = 6, .bounces = 3});
-    settings.accel = kTree;
+    settings.accel = bvh;
     const auto answers = [&] {
         std::string all;
         for (const Scene& scene : scenes) {
