@@ -26,6 +26,7 @@ struct Variant {
     std::uint32_t lanes = 1;
     bool optimised = true;
     NumberFormat format{};
+    std::vector<SourcePatch> patches{};
 
     std::string name() const {
         return fmt::format("{} {} lanes{}", format_name(format), lanes, optimised ? "" : ", -cl-opt-disable");
@@ -56,6 +57,7 @@ class KernelRunner : private OwnSession, public CheckRunner {
         options.format = variant.format;
         options.words_local = false;  // where the words lie is the ring's business, not that of the pieces
         KernelSources sources;
+        sources.patches = variant.patches;
         if (!variant.optimised) sources.more_options = {"-cl-opt-disable"};
         return Kernels(session, options, sources).build(file, {std::istreambuf_iterator<char>(in), {}});
     }

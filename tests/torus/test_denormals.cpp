@@ -10,7 +10,7 @@ namespace {
 TEST_CASE("no lane of the torus's kernels computes with denormals", "[.][denormals]") {
     REQUIRE(denormals_can_be_seen());
     Session session(choose_device(""));
-    for (const std::string& name : project_scenes()) {
+    for (const std::string name : {"glass", "polygons", "cones"}) {
         CAPTURE(name);
         TorusCase c;
         c.sources.more_options = {"-cl-opt-disable"};
