@@ -34,6 +34,7 @@ struct BenchCommand {
     std::uint32_t samples = 7;
     std::string report, baseline;
     double tolerance = 10;  // percent
+    bool denormals = false;
 };
 
 // The first row of the same lanes: what the slow-down of a format is measured against.
@@ -128,17 +129,50 @@ void finish(const BenchCommand& command, const BenchReport& baseline, const Benc
                command.tolerance);
 }
 
+std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, const Scene& scene,
+                              const RingSettings& settings, const NumberFormat& format) {
+    std::vector<BenchRow> rows;
+    for (const std::string& way : command.ways) rows.push_back(render_row(session, scene, settings, format, way));
+    if (!command.ways.empty()) return rows;
+    for (const std::uint32_t lanes : command.render.lanes ? std::vector{*command.render.lanes} : command.lanes)
+        rows.push_back(trace_row(session, scene, settings, format, lanes));
+    return rows;
+}
+
 std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session, const Scene& scene,
                                    const RingSettings& settings, const std::vector<NumberFormat>& formats) {
+    RingSettings flushing = settings;
+    flushing.kernels.sources.more_options.emplace_back("-cl-denorms-are-zero");
     std::vector<BenchRow> rows;
     for (const NumberFormat& format : formats) {
-        for (const std::string& way : command.ways) rows.push_back(render_row(session, scene, settings, format, way));
-        if (!command.ways.empty()) continue;
-        for (const std::uint32_t lanes : command.render.lanes ? std::vector{*command.render.lanes} : command.lanes)
-            rows.push_back(trace_row(session, scene, settings, format, lanes));
+        std::ranges::move(rows_of(command, session, scene, settings, format), std::back_inserter(rows));
+        if (!command.denormals) continue;
+        for (BenchRow& row : rows_of(command, session, scene, flushing, format)) {
+            row.flushed = true;
+            row.said.kernel += ", flushed";
+            rows.push_back(std::move(row));
+        }
     }
     check_rows(rows);
     return rows;
+}
+
+// Each row beside the one that takes denormal numbers for 0.
+void print_denormals(const std::vector<BenchRow>& rows) {
+    std::vector<std::vector<std::string>> table = {
+        {"kernel", "format", "lanes", "ms best", "flushed", "ratio", "median", "flushed", "ratio"}};
+    for (const BenchRow& row : rows)
+        for (const BenchRow& other : rows) {
+            const bool pair = other.flushed && other.said.kernel == row.said.kernel + ", flushed" &&
+                              other.said.format == row.said.format && other.said.lanes == row.said.lanes;
+            if (!pair) continue;
+            const auto ms = [](double s) { return fmt::format("{:.2f}", 1e3 * s); };
+            table.push_back({row.said.kernel, row.said.format, std::to_string(row.said.lanes), ms(row.best()),
+                             ms(other.best()), fmt::format("{:.2f}", row.best() / other.best()), ms(row.median()),
+                             ms(other.median()), fmt::format("{:.2f}", row.median() / other.median())});
+        }
+    fmt::print("\nwith denormal numbers, and with -cl-denorms-are-zero; above 1: lanes compute with them\n{}",
+               text_table(table));
 }
 
 // What would be passed over without a word.
@@ -181,6 +215,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
                scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
                settings.bounces, rows.front().said.rays, command.samples);
     print_rows(rows);
+    if (command.denormals) print_denormals(rows);
     if (command.ways.empty())
         print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
                          command.samples);
@@ -201,7 +236,10 @@ void add_bench_command(CLI::App& program) {
               "grid, bvh: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
               "is what the others are held against")
         ->delimiter(',')
-        ->type_name("none,grid,torus");
+        ->type_name("none,grid,bvh,torus");
+    command->add_flag("--denormals", options->denormals,
+                      "Time every row once more with denormal numbers taken for 0: where that is faster, lanes compute "
+                      "with them");
     add_value(*command, "--samples", options->samples,
               "Samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")

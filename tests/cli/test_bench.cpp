@@ -126,5 +126,20 @@ TEST_CASE("bench --ways times whole renders with and without a grid and on the t
     check_refused(empty, {"bench", "--ways", "grid,octree"}, 2, {"--ways octree", "none, grid, bvh or torus"});
 }
 
+TEST_CASE("bench --denormals times every row twice, and makes the same image where nothing is denormal", "[cli]") {
+    const ScratchFolder outputs;
+    const Outcome run =
+        run_raya({"bench", scene_file("planes"), "--ways", "none", "--size", "16", "--pes", "16", "--lanes", "4",
+                  "--format", "fp32", "--samples", "1", "--denormals", "--report", outputs / "x.json"});
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK_THAT(run.out, Catch::Contains("-cl-denorms-are-zero") && Catch::Contains("render, none, flushed"));
+    const auto rows = nlohmann::json::parse(file_contents(outputs / "x.json"))["rows"];
+    REQUIRE(rows.size() == 2);
+    CHECK(rows[1]["kernel"] == "render, none, flushed");
+    CHECK_THAT(rows[1]["build_options"].get<std::string>(), Catch::Contains("-cl-denorms-are-zero"));
+    CHECK(rows[0]["hash"] == rows[1]["hash"]);
+}
+
 }  // namespace
 }  // namespace raya
