@@ -65,7 +65,8 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     add_value(
         command, "--accel", o.accel,
         "How rays find what they hit, always the same: none: every ray is tested against all objects; bvh: it goes "
-        "down a tree of boxes in each PE's memory, sooner from some 100 objects on; grid: it walks through voxels and "
+        "down a tree of boxes in each PE's memory, sooner from a few hundred objects on; grid: it walks through voxels "
+        "and "
         "meets the objects listed there, A x B x C of them along x, y, z, by default some for each object")
         ->type_name("none|bvh|grid[:AxBxC]")
         ->capture_default_str();
