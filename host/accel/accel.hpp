@@ -20,8 +20,7 @@ enum class AccelKind : std::uint32_t {
 /// How rays find their nearest hit.
 struct Accel {
     AccelKind kind = AccelKind::kNone;
-    std::optional<Divisions>
-        divisions{};  // of a grid over the whole scene's box; empty: automatic, see accel_partition
+    std::optional<Divisions> divisions{};  // of a grid over the whole scene's box; empty: see accel_partition
 };
 
 /// What `--accel` takes: "none", "grid", "grid:4x4x4", "bvh".

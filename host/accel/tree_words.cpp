@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "host/accel/hit_regions.hpp"
+#include "host/accel/tree.hpp"
 #include "host/error.hpp"
 #include "host/scene/word_records.hpp"
 
@@ -146,7 +147,10 @@ class TreeWriter {
     std::uint64_t leaves_ = 0;
 };
 
-}  // namespace
+struct TreeItems {
+    std::vector<TreeItem> items;  // none where no boxes are known that hold all hits
+    double reach = -1;            // largest coordinate of the origins of rays that they are good for
+};
 
 TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
     const HitRegions regions(job, format, reach_for(job, format));
@@ -160,6 +164,8 @@ TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
     }
     return all;
 }
+
+}  // namespace
 
 AccelSummary append_tree(PackedJob& job, const NumberFormat& format) {
     TreeItems items = tree_items(job, format);
