@@ -1,0 +1,225 @@
+// A picture by Embree on all cores: ray by ray, or the ray trees of sixteen pixels in step.
+#pragma once
+#include <embree3/rtcore.h>
+#include <pmmintrin.h>
+
+#include <array>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "tools/embree/whitted.hpp"
+
+namespace raya {
+
+inline constexpr int kWide = 16, kTile = 4;
+inline constexpr float kFar = 1e30f;
+
+/// The rays that wait of one pixel's tree.
+class RayStack {
+  public:
+    void push_back(const Waiting& r) { rays_[size_++] = r; }
+    Waiting pop() { return rays_[--size_]; }
+    bool empty() const { return size_ == 0; }
+
+  private:
+    std::array<Waiting, 64> rays_;
+    std::size_t size_ = 0;
+};
+
+class Picture {
+  public:
+    Picture(const Whitted& whitted, const Camera& camera)
+        : whitted_(whitted), camera_(camera), pixels_(static_cast<std::size_t>(camera.width) * camera.height) {}
+
+    /// Rays of the picture, ray by ray; in rows.
+    template <class Row>
+    long all(int rows, const Row& trace_row) {
+        std::atomic<int> next = 0;
+        std::atomic<long> rays = 0;
+        std::vector<std::thread> threads;
+        for (unsigned i = 0; i < std::thread::hardware_concurrency(); ++i)
+            threads.emplace_back([&] {
+                _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);  // as Embree's manual wants it
+                _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+                long own = 0;
+                for (int row = next++; row < rows; row = next++) own += trace_row(row);
+                rays += own;
+            });
+        for (std::thread& thread : threads) thread.join();
+        return rays;
+    }
+
+    long single() {
+        return all(camera_.height, [&](int row) {
+            long rays = 0;
+            for (int column = 0; column < camera_.width; ++column)
+                pixel(row, column) = trace(camera_.direction(row, column), rays);
+            return rays;
+        });
+    }
+
+    long sixteen() {
+        const int across = (camera_.width + kTile - 1) / kTile, down = (camera_.height + kTile - 1) / kTile;
+        return all(down, [&](int row) {
+            long rays = 0;
+            for (int column = 0; column < across; ++column) rays += trace_tile(row * kTile, column * kTile);
+            return rays;
+        });
+    }
+
+    V3 mean() const {
+        V3 sum;
+        for (const V3& p : pixels_) sum = sum + p;
+        return (1 / static_cast<float>(pixels_.size())) * sum;
+    }
+
+  private:
+    V3& pixel(int row, int column) { return pixels_[static_cast<std::size_t>(row) * camera_.width + column]; }
+
+    V3 trace(V3 direction, long& rays) const {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        V3 colour;
+        RayStack stack;
+        stack.push_back({camera_.eye, direction, 1, 0});
+        while (!stack.empty()) {
+            const Waiting r = stack.pop();
+            ++rays;
+            RTCRayHit q{};
+            q.ray = {r.origin.x, r.origin.y, r.origin.z, 0, r.direction.x, r.direction.y, r.direction.z, 0,
+                     kFar,       ~0u,        0,          0};
+            q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(whitted_.embree().rtc(), &context, &q);
+            const PeerHit h = whitted_.embree().hit(r.origin, r.direction, q.ray.tfar, q.hit.geomID, q.hit.primID,
+                                                    {q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z}, q.hit.u, q.hit.v);
+            if (h.surface < 0) {
+                colour = colour + r.weight * whitted_.background();
+                continue;
+            }
+            const Met m = whitted_.meet(r, h);
+            colour = colour + r.weight * whitted_.ambient(m);
+            for (const PeerLight& light : whitted_.lights()) {
+                const V3 arm = light.position - m.outer;
+                if (!(dot(m.normal, arm) > 0)) continue;
+                ++rays;
+                const float distance = std::sqrt(dot(arm, arm));
+                const V3 to_light = (1 / distance) * arm;
+                if (whitted_.embree().plane_blocks(m.outer, to_light, distance)) continue;
+                RTCRay s = {m.outer.x,  m.outer.y, m.outer.z, 0,   to_light.x, to_light.y,
+                            to_light.z, 0,         distance,  ~0u, 0,          0};
+                rtcOccluded1(whitted_.embree().rtc(), &context, &s);
+                if (s.tfar > 0) colour = colour + r.weight * whitted_.lit(r, m, light, to_light);
+            }
+            whitted_.follow(stack, r, m);
+        }
+        return colour;
+    }
+
+    struct Lane {
+        RayStack stack;
+        Waiting ray;
+        Met met;
+        V3 colour;
+    };
+
+    long trace_tile(int top, int left) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        std::array<Lane, kWide> lanes;
+        for (int i = 0; i < kWide; ++i) {
+            const int row = top + i / kTile, column = left + i % kTile;
+            if (row < camera_.height && column < camera_.width)
+                lanes[i].stack.push_back({camera_.eye, camera_.direction(row, column), 1, 0});
+        }
+        long rays = 0;
+        while (const long taken = step(lanes, context, rays)) rays += taken;
+        for (int i = 0; i < kWide; ++i) {
+            const int row = top + i / kTile, column = left + i % kTile;
+            if (row < camera_.height && column < camera_.width) pixel(row, column) = lanes[i].colour;
+        }
+        return rays;
+    }
+
+    // The next ray of each lane's tree; returns how many there were. Shadow rays are added to `rays`.
+    long step(std::array<Lane, kWide>& lanes, RTCIntersectContext& context, long& rays) const {
+        alignas(64) std::array<int, kWide> valid{};
+        alignas(64) RTCRayHit16 q;
+        long taken = 0;
+        for (int i = 0; i < kWide; ++i) {
+            if (lanes[i].stack.empty()) continue;
+            const Waiting& r = lanes[i].ray = lanes[i].stack.pop();
+            valid[i] = -1;
+            ++taken;
+            put(q.ray, i, r.origin, r.direction, kFar);
+            q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        if (taken == 0) return 0;
+        rtcIntersect16(valid.data(), whitted_.embree().rtc(), &context, &q);
+        for (int i = 0; i < kWide; ++i) {
+            if (valid[i] == 0) continue;
+            Lane& lane = lanes[i];
+            const PeerHit h = whitted_.embree().hit(lane.ray.origin, lane.ray.direction, q.ray.tfar[i], q.hit.geomID[i],
+                                                    q.hit.primID[i], {q.hit.Ng_x[i], q.hit.Ng_y[i], q.hit.Ng_z[i]},
+                                                    q.hit.u[i], q.hit.v[i]);
+            if (h.surface < 0) {
+                lane.colour = lane.colour + lane.ray.weight * whitted_.background();
+                valid[i] = 0;
+                continue;
+            }
+            lane.met = whitted_.meet(lane.ray, h);
+            lane.colour = lane.colour + lane.ray.weight * whitted_.ambient(lane.met);
+        }
+        for (const PeerLight& light : whitted_.lights()) rays += light_up(lanes, valid, light, context);
+        for (int i = 0; i < kWide; ++i)
+            if (valid[i] != 0) whitted_.follow(lanes[i].stack, lanes[i].ray, lanes[i].met);
+        return taken;
+    }
+
+    long light_up(std::array<Lane, kWide>& lanes, const std::array<int, kWide>& valid, const PeerLight& light,
+                  RTCIntersectContext& context) const {
+        alignas(64) std::array<int, kWide> open{};
+        alignas(64) RTCRay16 s;
+        std::array<V3, kWide> to_light;
+        long rays = 0;
+        bool any = false;
+        for (int i = 0; i < kWide; ++i) {
+            const Met& m = lanes[i].met;
+            if (valid[i] == 0) continue;
+            const V3 arm = light.position - m.outer;
+            if (!(dot(m.normal, arm) > 0)) continue;
+            ++rays;
+            const float distance = std::sqrt(dot(arm, arm));
+            to_light[i] = (1 / distance) * arm;
+            if (whitted_.embree().plane_blocks(m.outer, to_light[i], distance)) continue;
+            put(s, i, m.outer, to_light[i], distance);
+            open[i] = -1;
+            any = true;
+        }
+        if (any) rtcOccluded16(open.data(), whitted_.embree().rtc(), &context, &s);
+        for (int i = 0; i < kWide; ++i)
+            if (open[i] != 0 && s.tfar[i] > 0)
+                lanes[i].colour = lanes[i].colour +
+                                  lanes[i].ray.weight * whitted_.lit(lanes[i].ray, lanes[i].met, light, to_light[i]);
+        return rays;
+    }
+
+    static void put(RTCRay16& rays, int i, V3 origin, V3 direction, float far) {
+        rays.org_x[i] = origin.x;
+        rays.org_y[i] = origin.y;
+        rays.org_z[i] = origin.z;
+        rays.dir_x[i] = direction.x;
+        rays.dir_y[i] = direction.y;
+        rays.dir_z[i] = direction.z;
+        rays.tnear[i] = rays.time[i] = 0;
+        rays.tfar[i] = far;
+        rays.mask[i] = ~0u;
+        rays.flags[i] = 0;
+    }
+
+    const Whitted& whitted_;
+    Camera camera_;
+    std::vector<V3> pixels_;
+};
+
+}  // namespace raya

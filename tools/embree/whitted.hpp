@@ -1,0 +1,134 @@
+// The rays that Whitted's ray tracing sends and what they add to a pixel (kernels/README.md), in fp32 as it comes.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tools/embree/embree_scene.hpp"
+
+namespace raya {
+
+struct Camera {
+    V3 eye, gaze, right, top;  // right and top to the middle of the image's sides at distance 1
+    int width, height;
+    bool corners;
+
+    V3 direction(int row, int column) const {
+        const auto share = [&](int at, int of) {
+            if (corners) return of > 1 ? static_cast<float>(at) / static_cast<float>(of - 1) : 0.5f;
+            return (static_cast<float>(at) + 0.5f) / static_cast<float>(of);
+        };
+        return normalized(gaze + (2 * share(column, width) - 1) * right + (1 - 2 * share(row, height)) * top);
+    }
+};
+
+inline Camera camera_of(const View& view, int width, int height, bool corners) {
+    const Vec3 gaze = (view.at - view.from).normalized(), right = gaze.cross(view.up).normalized();
+    const double h = std::tan(view.angle_degrees * M_PI / 360);
+    const auto side = [&](int pixels) { return corners ? std::max(1, pixels - 1) : pixels; };
+    const double w = h * side(width) / side(height);
+    return {to_float(view.from),
+            to_float(gaze),
+            to_float(w * right),
+            to_float(h * right.cross(gaze)),
+            width,
+            height,
+            corners};
+}
+
+struct PeerLight {
+    V3 position, colour;
+};
+
+/// A ray of a pixel's tree that waits.
+struct Waiting {
+    V3 origin, direction;
+    float weight;
+    int level;
+};
+
+/// What a ray has met, turned against it.
+struct Met {
+    V3 point, outer, inner, normal, colour;
+    const PeerSurface* surface;
+    bool leaving;
+};
+
+class Whitted {
+  public:
+    Whitted(const Scene& scene, const EmbreeScene& embree, int bounces)
+        : embree_(embree),
+          bounces_(bounces),
+          ambient_(static_cast<float>(ambient_intensity(scene))),
+          margin_(static_cast<float>(scene_extent(scene)) * 0x1p-20f),
+          background_(to_float(scene.background)) {
+        for (const Light& l : scene.lights) lights_.push_back({to_float(l.position), to_float(light_colour(scene, l))});
+    }
+
+    const EmbreeScene& embree() const { return embree_; }
+    const std::vector<PeerLight>& lights() const { return lights_; }
+    V3 background() const { return background_; }
+
+    Met meet(const Waiting& r, const PeerHit& h) const {
+        Met m;
+        m.surface = &embree_.surfaces()[static_cast<std::size_t>(h.surface)];
+        m.point = r.origin + h.t * r.direction;
+        m.leaving = dot(h.geometric, r.direction) > 0;
+        const V3 geometric = m.leaving ? -1 * h.geometric : h.geometric;
+        m.normal = dot(h.normal, geometric) < 0 ? -1 * h.normal : h.normal;
+        m.outer = m.point + margin_ * geometric;
+        m.inner = m.point - margin_ * geometric;
+        m.colour = m.surface->checker > 0 ? square(m, geometric) : m.surface->even;
+        return m;
+    }
+
+    V3 ambient(const Met& m) const { return (ambient_ * m.surface->diffuse) * m.colour; }
+
+    /// What a light adds that nothing stops; `to_light` has length 1.
+    V3 lit(const Waiting& r, const Met& m, const PeerLight& light, V3 to_light) const {
+        const PeerSurface& s = *m.surface;
+        const V3 mirror = r.direction - 2 * dot(m.normal, r.direction) * m.normal;
+        const float cosine = dot(mirror, to_light);
+        const float bright = s.specular > 0 && cosine > 0 ? s.specular * std::pow(cosine, s.shine) : 0;
+        return times(light.colour, (s.diffuse * dot(m.normal, to_light)) * m.colour + V3{bright, bright, bright});
+    }
+
+    /// Appends the rays that follow, the one that is to be followed first last.
+    template <class Stack>
+    void follow(Stack& stack, const Waiting& r, const Met& m) const {
+        if (r.level >= bounces_) return;
+        const PeerSurface& s = *m.surface;
+        float mirrored = s.specular;
+        if (s.transmittance > 0) {
+            const float e = m.leaving ? s.refraction : 1 / s.refraction, c = -dot(m.normal, r.direction);
+            const float g = 1 - e * e * (1 - c * c);
+            if (g < 0) {
+                mirrored += s.transmittance;
+            } else {
+                const V3 through = normalized(e * r.direction + (e * c - std::sqrt(g)) * m.normal);
+                stack.push_back({m.inner, through, r.weight * s.transmittance, r.level + 1});
+            }
+        }
+        if (mirrored > 0)
+            stack.push_back(
+                {m.outer, r.direction - 2 * dot(m.normal, r.direction) * m.normal, r.weight * mirrored, r.level + 1});
+    }
+
+  private:
+    static V3 square(const Met& m, V3 geometric) {
+        const float x = std::abs(geometric.x), y = std::abs(geometric.y), z = std::abs(geometric.z);
+        const float side = m.surface->checker;
+        const float u = x >= y && x >= z ? m.point.y : y >= z ? m.point.z : m.point.x;
+        const float v = x >= y && x >= z ? m.point.z : y >= z ? m.point.x : m.point.y;
+        const float half = 0.5f * (std::floor(u / side) + std::floor(v / side));
+        return half == std::floor(half) ? m.surface->even : m.surface->odd;
+    }
+
+    const EmbreeScene& embree_;
+    int bounces_;
+    float ambient_, margin_;
+    V3 background_;
+    std::vector<PeerLight> lights_;
+};
+
+}  // namespace raya
