@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/accel/accel.hpp"
+#include "host/machine/accel.hpp"
 #include "host/accel/partition.hpp"
 
 namespace raya {

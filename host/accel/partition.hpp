@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/accel/accel.hpp"
+#include "host/machine/accel.hpp"
 #include "host/error.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/scene/packer.hpp"

@@ -66,10 +66,9 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         command, "--accel", o.accel,
         "How rays find what they hit, always the same: none: every ray is tested against all objects; bvh: it goes "
         "down a tree of boxes in each PE's memory, sooner from a few hundred objects on; grid: it walks through voxels "
-        "and "
-        "meets the objects listed there, A x B x C of them along x, y, z, by default some for each object")
-        ->type_name("none|bvh|grid[:AxBxC]")
-        ->capture_default_str();
+        "and meets the objects listed there, A x B x C of them along x, y, z, by default some for each object; "
+        "default: bvh on grande, none on the other rings")
+        ->type_name("none|bvh|grid[:AxBxC]");
     add_value(command, "--pe-memory", o.pe_memory,
               "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "
               "4194304 on torus, no limit on grande")
@@ -190,7 +189,7 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     set_mapping(settings, o, image_size(o, scene));
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.antialias = antialias_settings(o);
-    settings.accel = parse_accel(o.accel);
+    settings.accel = o.accel.empty() ? settings.machine.accel : parse_accel(o.accel);
     settings.machine.pe_memory_bytes = pe_memory_of(o, settings.machine);
     settings.kernels = kernel_choice(o);
     return settings;

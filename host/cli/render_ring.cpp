@@ -61,15 +61,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
     report.requests = result.requests;
     for (const Phase& phase : result.phases) report.loads.emplace_back(phase.name, phase.load);
     report.antialias = antialiasing(settings, result);
-    if (const auto& a = result.accel)
-        report.accel = {.kind = a->kind == AccelKind::kBvh ? "bvh" : "grid",
-                        .words = a->words,
-                        .divisions = a->divisions,
-                        .copies = a->copies,
-                        .apart = a->apart,
-                        .nodes = a->nodes,
-                        .leaves = a->leaves,
-                        .depth = a->depth};
+    report.accel = result.accel;
     report.communication = result.communication;
     report.modelled = modelled(settings, result);
     return report;

@@ -51,13 +51,15 @@ Machine links() {
     return machine;
 }
 
-// [?] The SPA without the memory limit, one PE a column; fp32, as it is there for scenes that no SPA could hold.
+// [?] The SPA without the memory limit, one PE a column; fp32 and a tree of boxes, as it is there for scenes that no SPA
+// could hold.
 Machine grande() {
     Machine machine = spa();
     machine.name = machine.title = "grande";
     machine.pes = {};
     machine.pe_memory_bytes = {};
     machine.format = {};
+    machine.accel = {AccelKind::kBvh};
     return machine;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/machine/accel.hpp"
 #include "host/machine/dynamic_plan.hpp"
 #include "host/machine/mapping_rule.hpp"
 #include "host/machine/number_format.hpp"
@@ -33,6 +34,7 @@ struct Machine {
     std::uint32_t bounces = 8;
     NumberFormat format{};                 // that its PEs compute in
     MappingRule mapping{};                 // pixels to PEs, of a ring
+    Accel accel{};                         // how rays find their hits inside a PE of a ring
     std::optional<DynamicPlan> dynamic{};  // where its PEs take their pixels while it runs
 
     // Rates of the time model (machine/time_model.hpp); empty where they are not known.

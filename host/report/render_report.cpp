@@ -53,12 +53,11 @@ Json communication_json(const Communication& c) {
             {"gathers", c.gathers},       {"gather_words", c.gather_words}};
 }
 
-Json accel_json(const std::optional<AccelReport>& a) {
+Json accel_json(const std::optional<AccelSummary>& a) {
     if (!a) return {{"kind", "none"}};
-    if (a->kind == "bvh")
-        return {
-            {"kind", a->kind}, {"nodes", a->nodes}, {"leaves", a->leaves}, {"depth", a->depth}, {"words", a->words}};
-    return {{"kind", a->kind},
+    if (a->kind == AccelKind::kBvh)
+        return {{"kind", "bvh"}, {"nodes", a->nodes}, {"leaves", a->leaves}, {"depth", a->depth}, {"words", a->words}};
+    return {{"kind", "grid"},
             {"divisions", a->divisions},
             {"copies", a->copies},
             {"words", a->words},
@@ -206,11 +205,11 @@ std::string machine_text(const RenderReport& r) {
 
 std::string accel_line(const RenderReport& r) {
     if (!r.accel) return {};
-    const AccelReport& a = *r.accel;
+    const AccelSummary& a = *r.accel;
     const EventCounts& e = r.events;
     const auto rays = static_cast<double>(ray_count(e));
     const double tests = static_cast<double>(test_count(e)) / rays, steps = static_cast<double>(e[RAYA_STEPS]) / rays;
-    if (a.kind == "bvh")
+    if (a.kind == AccelKind::kBvh)
         return fmt::format("tree    {} nodes, {} leaves, depth {}; {:.1f} tests and {:.1f} nodes a ray\n", a.nodes,
                            a.leaves, a.depth, tests, steps);
     return fmt::format("grid    {}x{}x{} voxels, {} copies of objects{}; {:.1f} tests and {:.1f} steps a ray\n",

@@ -29,16 +29,6 @@ struct Antialiasing {
     std::uint32_t band_pixels = 0;  // pixels of a PE that go round the ring at a time
 };
 
-/// The grid or the tree that rays walked inside a PE.
-struct AccelReport {
-    std::string kind;                                // "grid", "bvh"
-    std::uint64_t words = 0;                         // of a PE's memory that hold it
-    std::array<std::uint32_t, 3> divisions{};        // of a grid: voxels along x, y and z
-    std::uint64_t copies = 0;                        // of objects in several voxels
-    std::uint64_t apart = 0;                         // large objects that every ray is tested against
-    std::uint64_t nodes = 0, leaves = 0, depth = 0;  // of a tree; nodes on its longest way down
-};
-
 /// The build of one program, on the host.
 struct ProgramBuild {
     std::string name;
@@ -78,7 +68,7 @@ struct RenderReport {
     Load load;                                        // of all phases together
     std::vector<std::pair<std::string, Load>> loads;  // of each phase, by its name
     std::optional<Antialiasing> antialias;
-    std::optional<AccelReport> accel;  // empty: every ray is tested against all objects
+    std::optional<AccelSummary> accel;  // empty: every ray is tested against all objects
     Communication communication;
     std::optional<ModelledTime> modelled;  // empty: the machine's rates are not known
     std::optional<TorusReport> torus;      // of a machine that divides the scene, in place of the four above

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/accel/accel.hpp"
+#include "host/machine/accel.hpp"
 #include "host/cl/profile.hpp"
 #include "host/image/image.hpp"
 #include "host/machine/communication.hpp"

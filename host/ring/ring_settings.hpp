@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "host/accel/accel.hpp"
+#include "host/machine/accel.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/machine/machine.hpp"
 #include "host/ring/antialias.hpp"

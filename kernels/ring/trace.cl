@@ -40,30 +40,15 @@ static inline void start_walk(words scene, tree* t, mask fresh, real row, real c
 
 // Lanes whose walk is done go on to the next point of their pixel, or store it and take the PE's next one.
 static inline void next_points(words scene, tree* t, pixel_store* store, tree_pixels* p, volatile __local uint* next) {
-    lanes_index idle, fresh, newcomer;
-    lanes_real row, column;
-    idle.truth = mask_not(t->walking);
-    fresh.all = newcomer.all = (index)(0);
-    row.all = column.all = num_all(0.0f);
-    add_points(t, store, p, idle.truth & (p->pixel.all != RAYA_NO_PIXEL));
-    const lanes_vec colour = lanes_of_vec(finished_colours(store, p));
-    for (uint lane = 0; lane < RAYA_LANES; ++lane) {
-        if (!idle.lane[lane]) continue;
-        const int has_pixel = p->pixel.lane[lane] != RAYA_NO_PIXEL;
-        if (!has_pixel || ++p->point.lane[lane] == raya_points(store->points)) {
-            if (has_pixel) store_pixel((job_words)scene, t, store, p, &colour, lane);
-            take_pixel(store, p, next, lane);
-            newcomer.lane[lane] = RAYA_TRUE;
-        }
-        if (p->pixel.lane[lane] == RAYA_NO_PIXEL) continue;
-        const raya_pixel pixel = raya_pixel_of(store->mapping, store->share, p->pixel.lane[lane]);
-        row.lane[lane] = pixel.row + raya_point_down(store->points, p->point.lane[lane]);
-        column.lane[lane] = pixel.column + raya_point_right(store->points, p->point.lane[lane]);
-        fresh.lane[lane] = RAYA_TRUE;
-    }
-    for (uint e = 0; e < RAYA_EVENTS; ++e)
-        t->events[e].all = choose_index(newcomer.truth, (index)(0), t->events[e].all);
-    if (mask_any(fresh.truth)) start_walk(scene, t, fresh.truth, row.all, column.all);
+    const mask idle = mask_not(t->walking), traced = idle & (p->pixel.all != RAYA_NO_PIXEL);
+    add_points(t, store, p, traced);
+    p->point.all = choose_index(traced, p->point.all + 1u, p->point.all);
+    const mask done = traced & (p->point.all == raya_points(store->points));
+    if (mask_any(done)) store_pixels((job_words)scene, t, store, p, done);
+    take_pixels(store, p, next, done | (idle & mask_not(traced)));
+    const mask fresh = idle & (p->pixel.all != RAYA_NO_PIXEL);
+    if (!mask_any(fresh)) return;
+    start_walk(scene, t, fresh, point_rows(store, p), point_columns(store, p));
 }
 
 // Puts the rays that the trees follow into the pool's first slots.
@@ -138,5 +123,5 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     open_store(&store);
     trace_share(scene, &store, next);
     __global ulong* mine = events + ((size_t)pe * RAYA_GROUP + item) * RAYA_EVENTS;
-    for (uint e = 0; e < RAYA_EVENTS; ++e) mine[e] += store.totals[e];
+    for (uint e = 0; e < RAYA_EVENTS; ++e) mine[e] += sum_of(store.totals[e]);
 }

@@ -176,6 +176,36 @@ RAYA_SHARED_FUNCTION raya_pixel raya_pixel_of(raya_mapping m, raya_share s, raya
     return pixel;
 }
 
+// A pixel of a share, and those that follow it at equal distances in its row: raya_pixel_of without its divisions.
+typedef struct {
+    raya_pixel pixel;
+    raya_u32 number;  // in the share
+    raya_u32 left;    // how many follow
+    raya_u32 step;    // columns from one to the next, modulo the width
+} raya_run;
+
+RAYA_SHARED_FUNCTION raya_run raya_run_of(raya_mapping m, raya_share s, raya_u32 k) {
+    raya_run run = {raya_pixel_of(m, s, k), k, 0, 0};
+    if (m.kind == RAYA_TILES) {
+        run.left = raya_first_of(m.parameter) - 1 - k % raya_first_of(m.parameter);
+        run.step = 1;
+    } else if (m.kind != RAYA_RANDOM) {
+        run.left = s.slots - 1 - k % s.slots;
+        run.step = s.slot_step;
+    }
+    return run;
+}
+
+// The run at pixel k of the share, where it goes on to that; else another one.
+RAYA_SHARED_FUNCTION raya_run raya_run_at(raya_run run, raya_mapping m, raya_share s, raya_u32 k) {
+    if (k != run.number + 1 || run.left == 0) return raya_run_of(m, s, k);
+    run.pixel.column += run.step;
+    if (run.pixel.column >= m.width) run.pixel.column -= m.width;
+    run.number = k;
+    --run.left;
+    return run;
+}
+
 // The number of a pixel in the share of its owner; the inverse of raya_pixel_of.
 RAYA_SHARED_FUNCTION raya_u32 raya_index_of(raya_mapping m, raya_share s, raya_pixel pixel) {
     if (m.kind == RAYA_TILES) {

@@ -1,4 +1,4 @@
-#include "host/accel/accel.hpp"
+#include "host/machine/accel.hpp"
 
 #include <fmt/core.h>
 
