@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/machine/accel.hpp"
 #include "host/accel/partition.hpp"
+#include "host/machine/accel.hpp"
 
 namespace raya {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/machine/accel.hpp"
 #include "host/error.hpp"
+#include "host/machine/accel.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/grid.h"

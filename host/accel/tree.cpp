@@ -37,10 +37,10 @@ struct Part {
     std::span<TreeItem> items;
     Bounds box;
 
-    bool is_leaf() const {
-        return items.size() <= RAYA_BVH_WIDTH &&
-               std::all_of(items.begin(), items.end(), [&](const TreeItem& i) { return i.kind == items[0].kind; });
+    bool is_of_one_kind() const {
+        return std::all_of(items.begin(), items.end(), [&](const TreeItem& i) { return i.kind == items[0].kind; });
     }
+    bool is_leaf() const { return items.size() <= most_in_leaf(items[0].kind) && is_of_one_kind(); }
 };
 
 Part part_of(std::span<TreeItem> items) {
@@ -117,7 +117,7 @@ Parts even_halves(const Part& part) {
 }
 
 Parts cut_by_kind(const Part& part) {
-    std::uint32_t kind = RAYA_LINK_CONES;  // the lowest
+    std::uint32_t kind = RAYA_LINK_OBJECT;  // the lowest
     for (const TreeItem& item : part.items) kind = std::min(kind, item.kind);
     const auto others =
         std::partition(part.items.begin(), part.items.end(), [&](const TreeItem& item) { return item.kind == kind; });
@@ -125,7 +125,7 @@ Parts cut_by_kind(const Part& part) {
 }
 
 Parts cut(const Part& part, std::uint32_t depth) {
-    if (part.items.size() <= RAYA_BVH_WIDTH) return cut_by_kind(part);
+    if (part.items.size() <= RAYA_BVH_WIDTH && !part.is_of_one_kind()) return cut_by_kind(part);
     if (depth >= kEvenFrom) return even_halves(part);
     const std::array<Scale, 3> scales = scales_of(part.items);
     std::array<std::array<Bin, kBins>, 3> bins;
@@ -188,6 +188,10 @@ class TreeBuilder {
 };
 
 }  // namespace
+
+std::uint32_t most_in_leaf(std::uint32_t kind) {
+    return kind == RAYA_LINK_POLYGON || kind == RAYA_LINK_OBJECT ? 1 : RAYA_BVH_WIDTH;
+}
 
 Tree build_tree(std::vector<TreeItem> items) {
     Tree tree;

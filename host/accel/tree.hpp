@@ -18,14 +18,14 @@ struct Bounds {
 struct TreeItem {
     Bounds box;
     std::uint32_t number;  // of the object
-    std::uint32_t kind;    // RAYA_LINK_SPHERES, _FACES, _POLYGONS or _CONES: a leaf has one
+    std::uint32_t kind;    // RAYA_LINK_SPHERES, _FACES, _POLYGON, _CONES or _OBJECT: a leaf has one
 };
 
 struct TreeChild {
     Bounds box;
     std::uint32_t kind;   // RAYA_LINK_*
     std::uint32_t first;  // of a node: its number; of a leaf: its first item
-    std::uint32_t items;  // of a leaf: how many, 1..16
+    std::uint32_t items;  // of a leaf: how many, 1..most_in_leaf(kind)
 };
 
 struct TreeNode {
@@ -39,6 +39,9 @@ struct Tree {
     TreeChild root{};             // of no meaning where there are no items
     std::uint32_t depth = 0;      // nodes on the longest way down
 };
+
+/// How many items a leaf of a kind holds at most: 16, or the one that fills it.
+std::uint32_t most_in_leaf(std::uint32_t kind);
 
 /// The same tree for the same items on every machine.
 Tree build_tree(std::vector<TreeItem> items);

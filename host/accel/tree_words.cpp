@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "host/accel/hit_regions.hpp"
 #include "host/accel/tree.hpp"
@@ -63,17 +64,14 @@ const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number) {
     return job.words().data() + objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
 }
 
-std::uint32_t kind_of(const PackedJob& job, std::uint32_t number) {
+// What kind of leaf an object goes to.
+std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uint32_t number) {
     const raya_objects& objects = job.header().objects;
+    if (!format.is_fp32()) return RAYA_LINK_OBJECT;
     if (number < objects.spheres) return RAYA_LINK_SPHERES;
     if (number >= objects.spheres + objects.planes + objects.polygons) return RAYA_LINK_CONES;
     const bool is_face = polygon_words(job, number)[RAYA_POLYGON_CORNERS] <= RAYA_BVH_MOST_CORNERS;
-    return is_face ? RAYA_LINK_FACES : RAYA_LINK_POLYGONS;
-}
-
-std::uint32_t rows_of(std::uint32_t kind) {
-    if (kind == RAYA_LINK_SPHERES) return RAYA_BVH_SPHERES;
-    return kind == RAYA_LINK_FACES ? RAYA_BVH_FACES : 1;
+    return is_face ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
 }
 
 // Lays a tree out row by row: a node, what its children hold, and so on.
@@ -83,13 +81,20 @@ class TreeWriter {
 
     std::uint32_t put(const TreeChild& child) {
         if (child.kind == RAYA_LINK_NODE) return put_node(tree_.nodes[child.first]);
-        const std::uint32_t row = take_rows(rows_of(child.kind));
         ++leaves_;
-        for (std::uint32_t column = 0; column < kWidth; ++column) {
-            const std::uint32_t i = child.first + (column < child.items ? column : 0);
-            put_object(row, column, child.kind, tree_.items[i].number);
+        const std::span items(tree_.items.data() + child.first, child.items);
+        switch (child.kind) {
+            case RAYA_LINK_OBJECT:
+                return raya_link_to_object(items[0].number);
+            case RAYA_LINK_POLYGON:
+                return put_outline(items[0].number);
+            case RAYA_LINK_FACES:
+                return put_faces(items);
+            case RAYA_LINK_CONES:
+                return put_cones(items);
+            default:
+                return put_spheres(items);
         }
-        return raya_link(child.kind, child.items, row);
     }
 
     const std::vector<std::uint32_t>& words() const { return words_; }
@@ -122,23 +127,87 @@ class TreeWriter {
         return raya_link(RAYA_LINK_NODE, 1, row);
     }
 
-    void put_object(std::uint32_t row, std::uint32_t column, std::uint32_t kind, std::uint32_t number) {
-        word(row + rows_of(kind) - 1, column) = number;  // in the last row
-        if (kind == RAYA_LINK_SPHERES) {
-            const std::size_t sphere = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
-            for (std::uint32_t w = 0; w < RAYA_BVH_NUMBERS; ++w) word(row + w, column) = job_.words()[sphere + w];
-        }
-        if (kind == RAYA_LINK_FACES) put_face(row, column, polygon_words(job_, number));
+    // `put` is given each column and the number of its item.
+    template <class Put>
+    static void for_columns(std::span<const TreeItem> items, const Put& put) {
+        for (std::uint32_t column = 0; column < kWidth; ++column)
+            put(column, items[column < items.size() ? column : 0].number);
     }
 
-    void put_face(std::uint32_t row, std::uint32_t column, const std::uint32_t* polygon) {
-        const std::uint32_t* corners = job_.words().data() + polygon[RAYA_POLYGON_CORNERS_AT];
-        const std::uint32_t last = polygon[RAYA_POLYGON_CORNERS] - 1;
-        for (std::uint32_t i = 0; i < RAYA_BVH_MOST_CORNERS; ++i)
-            for (std::uint32_t axis = 0; axis < 3; ++axis)
-                word(row + RAYA_BVH_CORNERS + 3 * i + axis, column) =
-                    corners[std::min(i, last) * RAYA_CORNER_WORDS + axis];
-        for (std::uint32_t w = 0; w < 4; ++w) word(row + RAYA_BVH_PLANE + w, column) = polygon[RAYA_PLANE_NORMAL + w];
+    // Words of the job from one on, down the column from a row on.
+    void put_column(std::uint32_t row, std::uint32_t column, const std::uint32_t* words, std::uint32_t count) {
+        for (std::uint32_t w = 0; w < count; ++w) word(row + w, column) = words[w];
+    }
+
+    std::uint32_t put_spheres(std::span<const TreeItem> items) {
+        const std::uint32_t row = take_rows(RAYA_BVH_SPHERES);
+        for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
+            const std::size_t sphere = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
+            put_column(row, column, job_.words().data() + sphere, RAYA_BVH_NUMBERS);
+            word(row + RAYA_BVH_NUMBERS, column) = number;
+        });
+        return raya_link(RAYA_LINK_SPHERES, static_cast<std::uint32_t>(items.size()), row);
+    }
+
+    std::uint32_t put_faces(std::span<const TreeItem> items) {
+        const bool triangles = std::all_of(items.begin(), items.end(), [&](const TreeItem& item) {
+            return polygon_words(job_, item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MOST_CORNERS;
+        });
+        const std::uint32_t row = take_rows(triangles ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES);
+        for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
+            const std::uint32_t* polygon = polygon_words(job_, number);
+            const std::uint32_t last = polygon[RAYA_POLYGON_CORNERS] - 1;
+            for (std::uint32_t i = 0; i < 3; ++i)
+                put_column(row + RAYA_BVH_CORNERS + 3 * i, column, corner(polygon, std::min(i, last)), 3);
+            put_column(row + RAYA_BVH_PLANE, column, polygon + RAYA_PLANE_NORMAL, 4);
+            word(row + RAYA_BVH_FACE_NUMBERS, column) = number;
+            if (!triangles) put_column(row + RAYA_BVH_FOURTH, column, corner(polygon, last), 3);
+        });
+        return raya_link(triangles ? RAYA_LINK_TRIANGLES : RAYA_LINK_FACES, static_cast<std::uint32_t>(items.size()),
+                         row);
+    }
+
+    std::uint32_t put_outline(std::uint32_t number) {
+        const std::uint32_t* polygon = polygon_words(job_, number);
+        const std::uint32_t corners = polygon[RAYA_POLYGON_CORNERS], rows = raya_outline_rows(corners);
+        const std::uint32_t row = take_rows(1 + 3 * rows);
+        word(row, RAYA_BVH_OUTLINE_NUMBER) = number;
+        word(row, RAYA_BVH_OUTLINE_CORNERS) = corners;
+        for (std::uint32_t w = 0; w < 4; ++w) word(row, RAYA_BVH_OUTLINE_PLANE + w) = polygon[RAYA_PLANE_NORMAL + w];
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            float low = kInfinity, high = -kInfinity;
+            for (std::uint32_t i = 0; i < rows * kWidth; ++i) {
+                const std::uint32_t place = corner(polygon, i < corners ? i : 0)[axis];
+                low = std::min(low, std::bit_cast<float>(place));
+                high = std::max(high, std::bit_cast<float>(place));
+                word(row + 1 + axis * rows, i) = place;
+            }
+            word(row, RAYA_BVH_OUTLINE_LOW + axis) = std::bit_cast<std::uint32_t>(low);
+            word(row, RAYA_BVH_OUTLINE_HIGH + axis) = std::bit_cast<std::uint32_t>(high);
+        }
+        return raya_link(RAYA_LINK_POLYGON, 1, row);
+    }
+
+    std::uint32_t put_cones(std::span<const TreeItem> items) {
+        const std::uint32_t row = take_rows(RAYA_BVH_CONES);
+        const raya_objects& objects = job_.header().objects;
+        const std::uint32_t first = objects.spheres + objects.planes + objects.polygons;
+        for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
+            const std::size_t at = objects.cones_at + std::size_t{number - first} * RAYA_CONE_WORDS;
+            const std::uint32_t* cone = job_.words().data() + at;
+            put_column(row + RAYA_BVH_BASE, column, cone + RAYA_CONE_BASE, 3);
+            word(row + RAYA_BVH_RADIUS, column) = cone[RAYA_CONE_RADIUS];
+            put_column(row + RAYA_BVH_AXIS, column, cone + RAYA_CONE_AXIS, 3);
+            word(row + RAYA_BVH_HEIGHT, column) = cone[RAYA_CONE_HEIGHT];
+            word(row + RAYA_BVH_SLOPE, column) = cone[RAYA_CONE_SLOPE];
+            word(row + RAYA_BVH_INSIDE, column) = cone[RAYA_CONE_INSIDE];
+            word(row + RAYA_BVH_CONE_NUMBERS, column) = number;
+        });
+        return raya_link(RAYA_LINK_CONES, static_cast<std::uint32_t>(items.size()), row);
+    }
+
+    const std::uint32_t* corner(const std::uint32_t* polygon, std::uint32_t i) const {
+        return job_.words().data() + polygon[RAYA_POLYGON_CORNERS_AT] + std::size_t{i} * RAYA_CORNER_WORDS;
     }
 
     const Tree& tree_;
@@ -160,7 +229,7 @@ TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
     all.items.reserve(regions.size());
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const std::uint32_t number = regions.number(i);
-        all.items.push_back({bounds_of(regions.region(i).box, all.reach), number, kind_of(job, number)});
+        all.items.push_back({bounds_of(regions.region(i).box, all.reach), number, kind_of(job, format, number)});
     }
     return all;
 }

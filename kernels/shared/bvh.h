@@ -1,10 +1,18 @@
 // A tree of boxes over a scene's finite objects, as it lies behind a job's words.
 //
 // Rows of 16 words: what sixteen lanes read at once. A node is RAYA_BVH_NODE rows, one column for each child: its box,
-// and a link to what it holds. A leaf of spheres is RAYA_BVH_SPHERES rows, one column a sphere; one of polygons of
-// three or four corners is RAYA_BVH_FACES rows, one column a polygon; a leaf of other objects is a row of their
-// numbers. Columns of a node that no child has hold a box that no ray meets; columns of a leaf beyond its last object
-// repeat the first.
+// and a link to what it holds. In fp32 that is another node, or a leaf of objects of one kind:
+//
+//     spheres, cones     one in each column, RAYA_BVH_SPHERES or RAYA_BVH_CONES rows
+//     faces              polygons of three or four corners, one in each column: RAYA_BVH_FACES rows, RAYA_BVH_TRIANGLES
+//                        where none has four
+//     a polygon          of more corners: a row of what is said once, then its corners, one in each column
+//
+// In a reduced format a test costs ten times what it costs in fp32, and a box still what it does: links lead to other
+// nodes or to single objects by their numbers, and V rays test an object each.
+//
+// Columns of a node that no child has hold a box that no ray meets; columns of a leaf beyond its last object repeat the
+// first.
 #ifndef RAYA_SHARED_BVH_H
 #define RAYA_SHARED_BVH_H
 #include "kernels/shared/portable.h"
@@ -32,22 +40,55 @@ enum {  // rows of a leaf of spheres: the words of their objects (kernels/shared
     RAYA_BVH_NUMBERS = 4,
     RAYA_BVH_SPHERES = 5
 };
-
-enum {  // rows of a leaf of polygons: x, y, z of each corner, the third one twice where there is no fourth; their
-        // planes
+enum {  // rows of a leaf of faces: x, y, z of their first three corners, their planes, their numbers, and x, y, z of
+        // their last corners: fourth or third
     RAYA_BVH_CORNERS = 0,
-    RAYA_BVH_PLANE = 12,
-    RAYA_BVH_FACE_NUMBERS = 16,
+    RAYA_BVH_PLANE = 9,
+    RAYA_BVH_FACE_NUMBERS = 13,
+    RAYA_BVH_TRIANGLES = 14,
+    RAYA_BVH_FOURTH = 14,
     RAYA_BVH_FACES = 17
 };
 #define RAYA_BVH_MOST_CORNERS 4
+enum {  // words of a polygon's first row
+    RAYA_BVH_OUTLINE_NUMBER = 0,
+    RAYA_BVH_OUTLINE_CORNERS = 1,  // how many
+    RAYA_BVH_OUTLINE_PLANE = 2,
+    RAYA_BVH_OUTLINE_LOW = 6,  // x, y, z: what the corners span
+    RAYA_BVH_OUTLINE_HIGH = 9
+};
+enum {  // rows of a leaf of cones: the words of their objects, and their numbers
+    RAYA_BVH_BASE = 0,
+    RAYA_BVH_RADIUS = 3,
+    RAYA_BVH_AXIS = 4,
+    RAYA_BVH_HEIGHT = 7,
+    RAYA_BVH_SLOPE = 8,
+    RAYA_BVH_INSIDE = 9,
+    RAYA_BVH_CONE_NUMBERS = 10,
+    RAYA_BVH_CONES = 11
+};
 
-// A link: the kind of what it leads to in bits 29..31, a leaf's objects - 1 in bits 25..28, the first row in bits
-// 0..24.
+// Behind a polygon's first row x of all corners, then y, then z, so many rows each: the first corner once more behind
+// the last one and in all columns to the end, and at least one column more than there are edges in whole rows.
+RAYA_SHARED_FUNCTION raya_u32 raya_outline_rows(raya_u32 corners) {
+    return (corners + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH + 1;
+}
+
+// A link: the kind of what it leads to in bits 29..31; of an object its number in the others; else a leaf's objects - 1
+// in bits 25..28, the first row in bits 0..24.
 #define RAYA_LINK_ROW 0x01ffffffu
 #define RAYA_LINK_OBJECTS_SHIFT 25u
 #define RAYA_LINK_KIND_SHIFT 29u
-enum { RAYA_LINK_NODE, RAYA_LINK_SPHERES, RAYA_LINK_FACES, RAYA_LINK_POLYGONS, RAYA_LINK_CONES };
+#define RAYA_LINK_NUMBER 0x1fffffffu
+enum {
+    RAYA_LINK_NODE,
+    RAYA_LINK_SPHERES,
+    RAYA_LINK_TRIANGLES,
+    RAYA_LINK_FACES,
+    RAYA_LINK_POLYGON,
+    RAYA_LINK_CONES,
+    RAYA_LINK_OBJECT
+};
 #define RAYA_NO_LINK 0xffffffffu  // of a tree without objects
 
 RAYA_SHARED_FUNCTION raya_u32 raya_link(raya_u32 kind, raya_u32 objects, raya_u32 row) {
@@ -56,5 +97,9 @@ RAYA_SHARED_FUNCTION raya_u32 raya_link(raya_u32 kind, raya_u32 objects, raya_u3
 RAYA_SHARED_FUNCTION raya_u32 raya_link_kind(raya_u32 link) { return link >> RAYA_LINK_KIND_SHIFT; }
 RAYA_SHARED_FUNCTION raya_u32 raya_link_objects(raya_u32 link) { return (link >> RAYA_LINK_OBJECTS_SHIFT & 15u) + 1; }
 RAYA_SHARED_FUNCTION raya_u32 raya_link_row(raya_u32 link) { return link & RAYA_LINK_ROW; }
+RAYA_SHARED_FUNCTION raya_u32 raya_link_to_object(raya_u32 number) {
+    return (raya_u32)RAYA_LINK_OBJECT << RAYA_LINK_KIND_SHIFT | number;
+}
+RAYA_SHARED_FUNCTION raya_u32 raya_link_number(raya_u32 link) { return link & RAYA_LINK_NUMBER; }
 
 #endif

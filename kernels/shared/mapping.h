@@ -182,10 +182,10 @@ typedef struct {
     raya_u32 number;  // in the share
     raya_u32 left;    // how many follow
     raya_u32 step;    // columns from one to the next, modulo the width
-} raya_run;
+} raya_pixel_run;
 
-RAYA_SHARED_FUNCTION raya_run raya_run_of(raya_mapping m, raya_share s, raya_u32 k) {
-    raya_run run = {raya_pixel_of(m, s, k), k, 0, 0};
+RAYA_SHARED_FUNCTION raya_pixel_run raya_pixel_run_of(raya_mapping m, raya_share s, raya_u32 k) {
+    raya_pixel_run run = {raya_pixel_of(m, s, k), k, 0, 0};
     if (m.kind == RAYA_TILES) {
         run.left = raya_first_of(m.parameter) - 1 - k % raya_first_of(m.parameter);
         run.step = 1;
@@ -197,8 +197,8 @@ RAYA_SHARED_FUNCTION raya_run raya_run_of(raya_mapping m, raya_share s, raya_u32
 }
 
 // The run at pixel k of the share, where it goes on to that; else another one.
-RAYA_SHARED_FUNCTION raya_run raya_run_at(raya_run run, raya_mapping m, raya_share s, raya_u32 k) {
-    if (k != run.number + 1 || run.left == 0) return raya_run_of(m, s, k);
+RAYA_SHARED_FUNCTION raya_pixel_run raya_pixel_run_at(raya_pixel_run run, raya_mapping m, raya_share s, raya_u32 k) {
+    if (k != run.number + 1 || run.left == 0) return raya_pixel_run_of(m, s, k);
     run.pixel.column += run.step;
     if (run.pixel.column >= m.width) run.pixel.column -= m.width;
     run.number = k;

@@ -11,7 +11,9 @@ namespace raya {
 namespace {
 
 TreeItem item_at(SplitMix& random, std::uint32_t number, double size, int way) {
-    TreeItem item{{}, number, RAYA_LINK_SPHERES + number % 3};
+    constexpr std::array<std::uint32_t, 4> kinds = {RAYA_LINK_SPHERES, RAYA_LINK_FACES, RAYA_LINK_POLYGON,
+                                                    RAYA_LINK_OBJECT};
+    TreeItem item{{}, number, kinds[number % kinds.size()]};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double at = way == 0   ? random.uniform(-1, 1)
                           : way == 1 ? 0.25                                               // all in one place
@@ -33,7 +35,7 @@ bool holds(const Bounds& outer, const Bounds& inner) {
 std::uint32_t check_child(const Tree& tree, const TreeChild& child, std::multiset<std::uint32_t>& numbers) {
     if (child.kind != RAYA_LINK_NODE) {
         REQUIRE(child.items >= 1);
-        REQUIRE(child.items <= RAYA_BVH_WIDTH);
+        REQUIRE(child.items <= most_in_leaf(child.kind));
         for (std::uint32_t i = child.first; i < child.first + child.items; ++i) {
             CHECK(tree.items[i].kind == child.kind);
             CHECK(holds(child.box, tree.items[i].box));

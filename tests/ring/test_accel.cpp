@@ -1,5 +1,7 @@
 // The grid or tree of a PE decides which objects are tested, never what comes out (`--accel grid`, `--accel bvh`).
 #include <catch2/catch.hpp>
+#include <map>
+#include <numbers>
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
@@ -66,6 +68,17 @@ TEST_CASE("scenes of all kinds of objects look alike with a grid or a tree, in c
     }
 }
 
+// A polygon across `at` of any number of corners, concave from six on.
+Polygon star(SplitMix& random, const Vec3& at, const Vec3& u, const Vec3& v, int surface) {
+    Polygon polygon{{}, {}, surface};
+    const auto corners = 3 + random_below(random, 40);
+    for (std::uint64_t i = 0; i < corners; ++i) {
+        const double turn = 2 * std::numbers::pi * double(i) / double(corners), reach = corners > 5 && i % 2 ? 0.5 : 1;
+        polygon.vertices.push_back(at + reach * (std::cos(turn) * u + std::sin(turn) * v));
+    }
+    return polygon;
+}
+
 // Spheres, polygons and cones that are tiny and huge, touch, nest, coincide, and lie in planes along the axes, as rays
 // do that are sent along them.
 Scene crowded_scene(std::uint64_t seed) {
@@ -90,6 +103,7 @@ Scene crowded_scene(std::uint64_t seed) {
         Vec3 u(size(), 0, 0), v(0, size(), 0);
         if (i % 2) std::swap(v.y, v.z);  // along axes, all of them
         scene.polygons.push_back({{at, at + u, at + u + v, at + v}, {}, surface()});
+        scene.polygons.push_back(star(random, place(), u, v, surface()));
         const Vec3 to = at + 0.3 * place();
         scene.cones.push_back({at, size(), to, size(), surface()});
     }
@@ -287,7 +301,8 @@ TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel]") {
     const std::vector<Scene> scenes = {crowded_scene(2), copies};
     RingSettings settings = raya::settings_of({.width = 24, .height = 20, .pes = 6, .bounces = 3});
     settings.accel = bvh;
-    const auto answers = [&] {
+    const auto answers = [&](const char* format) {
+        settings.format = parse_format(format);
         std::string all;
         for (const Scene& scene : scenes) {
             const RingResult result = RingRenderer(session, scene, settings).render();
@@ -295,22 +310,31 @@ TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel]") {
         }
         return all;
     };
-    const std::string right = answers();
-    const std::vector<SourcePatch> faults = {
-        {"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"},
-        {"bvh/boxes.clh", "const mask enters = near <= far;", "const mask enters = near + 0.01f <= far;"},
-        {"bvh/boxes.clh", "popcount(entered) - 1", "popcount(entered) - 2 + (popcount(entered) == 1)"},
-        {"bvh/descent.clh", "(p->entries[lane][top] > p->distance.lane[lane])",
-         "(p->entries[lane][top] * 1.01f > p->distance.lane[lane])"},
-        {"bvh/descent.clh", "shadow && h.object != RAYA_NO_OBJECT ? RAYA_NO_LINK",
-         "h.object != RAYA_NO_OBJECT ? RAYA_NO_LINK"},
-        {"bvh/leaves.clh", "number < h->object;", "number > h->object;"},
-        {"bvh/descent.clh", "m & mask_not(done);", "m & mask_not(done) & (r.direction.x > 0.0f);"}};
-    for (const SourcePatch& fault : quick_of(3, faults)) {
-        settings.kernels.sources.patches = {fault};
+    const std::map<std::string, std::string> right = {{"fp32", answers("fp32")}, {"spa22", answers("spa22")}};
+    struct Fault {
+        SourcePatch patch;
+        const char* format = "fp32";
+    };
+    const std::vector<Fault> faults = {
+        {{"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"}},
+        {{"bvh/meet_objects.clh", "p->distance.all = h.distance;", "p->distance.all = h.distance * 0.99f;"}, "spa22"},
+        {{"bvh/leaves.clh", "if (!(popcount(crossed) & 1u)) return;", "if (!(crossed & 1u)) return;"}},
+        {{"bvh/boxes.clh", "const mask enters = near <= far;", "const mask enters = near + 0.01f <= far;"}},
+        {{"bvh/boxes.clh", "popcount(entered) - 1", "popcount(entered) - 2 + (popcount(entered) == 1)"}},
+        {{"bvh/descent.clh", "(p->entries[lane][top] > p->distance.lane[lane])",
+          "(p->entries[lane][top] * 1.01f > p->distance.lane[lane])"}},
+        {{"bvh/descent.clh", "shadow && p->object.lane[lane]", "p->object.lane[lane]"}},
+        {{"bvh/leaves.clh", "number < h->object;", "number > h->object;"}},
+        {{"bvh/leaves.clh", "if (!triangles) box =", "if (triangles) box ="}},
+        {{"bvh/leaves.clh", "choose(in & mask_not(out & (x.t_out <= x.t_in))", "choose(in & mask_not(out)"}},
+        {{"bvh/meet_objects.clh", "raya_link_number(p->link[lane]);", "raya_link_number(p->link[lane]) & ~1u;"},
+         "spa22"},
+        {{"bvh/ray_pool.clh", "m & mask_not(done);", "m & mask_not(done) & (r.direction.x > 0.0f);"}}};
+    for (const Fault& fault : quick_of(3, faults)) {
+        settings.kernels.sources.patches = {fault.patch};
         check_patches(settings.kernels.sources);
-        CAPTURE(fault.file, fault.replace);
-        CHECK(answers() != right);
+        CAPTURE(fault.patch.file, fault.patch.replace);
+        CHECK(answers(fault.format) != right.at(fault.format));
     }
 }
 
