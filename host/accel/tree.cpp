@@ -10,21 +10,6 @@ namespace {
 constexpr std::size_t kBins = 32;        // along each axis
 constexpr std::uint32_t kEvenFrom = 24;  // depth from which on halves are taken, so that no tree is much deeper
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Bounds kEmpty = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-
-void extend(Bounds& box, const Bounds& by) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] = std::min(box.low[axis], by.low[axis]);
-        box.high[axis] = std::max(box.high[axis], by.high[axis]);
-    }
-}
-
-// Half the surface.
-float area(const Bounds& box) {
-    if (box.low[0] > box.high[0]) return 0;
-    const float x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
-    return x * y + y * z + z * x;
-}
 
 // Twice the middle.
 float middle(const TreeItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }
@@ -44,13 +29,13 @@ struct Part {
 };
 
 Part part_of(std::span<TreeItem> items) {
-    Part part{items, kEmpty};
+    Part part{items, kNowhere};
     for (const TreeItem& item : items) extend(part.box, item.box);
     return part;
 }
 
 struct Bin {
-    Bounds box = kEmpty;
+    Bounds box = kNowhere;
     std::size_t items = 0;
 };
 
@@ -188,6 +173,19 @@ class TreeBuilder {
 };
 
 }  // namespace
+
+void extend(Bounds& box, const Bounds& by) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = std::min(box.low[axis], by.low[axis]);
+        box.high[axis] = std::max(box.high[axis], by.high[axis]);
+    }
+}
+
+float area(const Bounds& box) {
+    if (box.low[0] > box.high[0]) return 0;
+    const float x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
+    return x * y + y * z + z * x;
+}
 
 std::uint32_t most_in_leaf(std::uint32_t kind) {
     return kind == RAYA_LINK_POLYGON || kind == RAYA_LINK_OBJECT ? 1 : RAYA_BVH_WIDTH;

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "kernels/shared/bvh.h"
@@ -13,6 +14,14 @@ namespace raya {
 struct Bounds {
     std::array<float, 3> low, high;
 };
+constexpr Bounds kNowhere = {{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+                              std::numeric_limits<float>::infinity()},
+                             {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+                              -std::numeric_limits<float>::infinity()}};
+
+void extend(Bounds& box, const Bounds& by);
+/// Half the surface; 0 of nowhere.
+float area(const Bounds& box);
 
 /// What a tree is built over.
 struct TreeItem {

@@ -217,13 +217,30 @@ class TreeWriter {
 };
 
 struct TreeItems {
-    std::vector<TreeItem> items;  // none where no boxes are known that hold all hits
-    double reach = -1;            // largest coordinate of the origins of rays that they are good for
+    std::vector<TreeItem> items;       // none where no boxes are known that hold all hits
+    std::vector<std::uint32_t> apart;  // objects that are no items, ascending
+    double reach = -1;                 // largest coordinate of the origins of rays that they are good for
 };
 
+// Objects so large that nearly every ray comes to them (the ground under a scene, walls around it): a leaf costs a ray
+// more than a test that V rays make at once. None where there are too many.
+constexpr std::size_t kMostApart = 8;
+constexpr float kLargeShare = 1.0F / 8;  // of the surface of what is around all
+
+void hold_large_apart(TreeItems& all) {
+    Bounds whole = kNowhere;
+    for (const TreeItem& item : all.items) extend(whole, item.box);
+    const auto is_large = [&](const TreeItem& item) { return area(item.box) > kLargeShare * area(whole); };
+    const auto large = static_cast<std::size_t>(std::count_if(all.items.begin(), all.items.end(), is_large));
+    if (large > kMostApart) return;
+    for (const TreeItem& item : all.items)
+        if (is_large(item)) all.apart.push_back(item.number);
+    std::erase_if(all.items, is_large);
+}
+
 TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
-    const HitRegions regions(job, format, reach_for(job, format));
     TreeItems all;
+    const HitRegions regions(job, format, reach_for(job, format));
     if (!regions.known()) return all;
     all.reach = regions.reach();
     all.items.reserve(regions.size());
@@ -231,33 +248,46 @@ TreeItems tree_items(const PackedJob& job, const NumberFormat& format) {
         const std::uint32_t number = regions.number(i);
         all.items.push_back({bounds_of(regions.region(i).box, all.reach), number, kind_of(job, format, number)});
     }
+    hold_large_apart(all);
     return all;
 }
 
 }  // namespace
 
+bool tree_pays(const Scene& scene, const NumberFormat& format) {
+    constexpr double kFew = 160;
+    double corners = 0;
+    for (const Polygon& polygon : scene.polygons) corners += static_cast<double>(polygon.vertices.size());
+    const auto spheres = static_cast<double>(scene.spheres.size()), cones = static_cast<double>(scene.cones.size());
+    return kFew < (format.is_fp32() ? spheres + 1.5 * corners + 4 * cones : 2 * spheres + 12 * corners + 32 * cones);
+}
+
 AccelSummary append_tree(PackedJob& job, const NumberFormat& format) {
-    TreeItems items = tree_items(job, format);
-    const Tree tree = build_tree(std::move(items.items));
+    TreeItems all = tree_items(job, format);
+    const Tree tree = build_tree(std::move(all.items));
     TreeWriter writer(tree, job);
     raya_bvh header{};
-    header.reach = static_cast<float>(items.reach);
+    header.reach = static_cast<float>(all.reach);
     header.root = tree.items.empty() ? RAYA_NO_LINK : writer.put(tree.root);
-    const std::size_t end = job.words().size();
-    const std::size_t rows_at = (end + kWordsOf<raya_bvh> + kWidth - 1) / kWidth * kWidth;
+    const std::size_t at = job.words().size(), end = at + kWordsOf<raya_bvh> + all.apart.size();
+    const std::size_t rows_at = (end + kWidth - 1) / kWidth * kWidth;
     if (writer.words().size() / kWidth > RAYA_LINK_ROW)
         throw UserError(fmt::format("--accel bvh packs to {} rows of 64 bytes, more than its links reach",
                                     writer.words().size() / kWidth));
+    header.apart = static_cast<std::uint32_t>(all.apart.size());
+    header.apart_at = static_cast<std::uint32_t>(at + kWordsOf<raya_bvh>);
     header.rows_at = static_cast<std::uint32_t>(rows_at);
-    std::vector<std::uint32_t> words(rows_at - end);
+    std::vector<std::uint32_t> words(rows_at - at);
     put_record(words, 0, header);
+    std::copy(all.apart.begin(), all.apart.end(), words.begin() + kWordsOf<raya_bvh>);
     words.insert(words.end(), writer.words().begin(), writer.words().end());
     job.append(words);
     raya_job with_tree = job.header();
-    with_tree.accel_at = static_cast<std::uint32_t>(end);
+    with_tree.accel_at = static_cast<std::uint32_t>(at);
     job.set_header(with_tree);
     return {.kind = AccelKind::kBvh,
             .words = words.size(),
+            .apart = header.apart,
             .nodes = tree.nodes.size(),
             .leaves = writer.leaves(),
             .depth = tree.depth};

@@ -11,4 +11,7 @@ namespace raya {
 /// and room for the walk's rounding. UserError where its rows are too many.
 AccelSummary append_tree(PackedJob& job, const NumberFormat& format);
 
+/// Whether a tree is sooner than testing every ray against all objects, as measured on a CPU of sixteen lanes.
+bool tree_pays(const Scene& scene, const NumberFormat& format);
+
 }  // namespace raya

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "host/accel/tree_words.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"
@@ -67,7 +68,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         "How rays find what they hit, always the same: none: every ray is tested against all objects; bvh: it goes "
         "down a tree of boxes in each PE's memory, sooner from a few hundred objects on; grid: it walks through voxels "
         "and meets the objects listed there, A x B x C of them along x, y, z, by default some for each object; "
-        "default: bvh on grande, none on the other rings")
+        "default: on grande bvh where that is sooner, from some 100 spheres or 30 polygons on, else none")
         ->type_name("none|bvh|grid[:AxBxC]");
     add_value(command, "--pe-memory", o.pe_memory,
               "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "
@@ -147,6 +148,13 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize
     settings.mapping = make_mapping(rule_of(mapping, o, machine, image.width), image, pes);
 }
 
+// What the machine does by default; with few objects a tree takes longer than it saves.
+Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene& scene) {
+    if (!o.accel.empty()) return parse_accel(o.accel);
+    const bool pays = settings.machine.accel.kind != AccelKind::kBvh || tree_pays(scene, settings.format);
+    return pays ? settings.machine.accel : Accel{};
+}
+
 }  // namespace
 
 ImageSize image_size(const RenderOptions& o, const Scene& scene) {
@@ -189,7 +197,7 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     set_mapping(settings, o, image_size(o, scene));
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.antialias = antialias_settings(o);
-    settings.accel = o.accel.empty() ? settings.machine.accel : parse_accel(o.accel);
+    settings.accel = accel_of(o, settings, scene);
     settings.machine.pe_memory_bytes = pe_memory_of(o, settings.machine);
     settings.kernels = kernel_choice(o);
     return settings;

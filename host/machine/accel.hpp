@@ -32,7 +32,7 @@ struct AccelSummary {
     std::uint64_t words = 0;   // of the job that hold it
     Divisions divisions{};     // of a grid
     std::uint64_t copies = 0;  // entries of a grid's lists beyond each object's first
-    std::uint32_t apart = 0;   // objects in no list of a grid, which every ray is tested against
+    std::uint32_t apart = 0;   // finite objects in no list and no leaf, which every ray is tested against
     std::uint64_t nodes = 0;   // of a tree
     std::uint64_t leaves = 0;
     std::uint32_t depth = 0;  // nodes on a tree's longest way down

@@ -56,12 +56,10 @@ Json communication_json(const Communication& c) {
 Json accel_json(const std::optional<AccelSummary>& a) {
     if (!a) return {{"kind", "none"}};
     if (a->kind == AccelKind::kBvh)
-        return {{"kind", "bvh"}, {"nodes", a->nodes}, {"leaves", a->leaves}, {"depth", a->depth}, {"words", a->words}};
-    return {{"kind", "grid"},
-            {"divisions", a->divisions},
-            {"copies", a->copies},
-            {"words", a->words},
-            {"apart", a->apart}};
+        return {{"kind", "bvh"},     {"nodes", a->nodes}, {"leaves", a->leaves},
+                {"depth", a->depth}, {"words", a->words}, {"apart", a->apart}};
+    return {
+        {"kind", "grid"}, {"divisions", a->divisions}, {"copies", a->copies}, {"words", a->words}, {"apart", a->apart}};
 }
 
 // Operations of all that was counted, by the modelled PEs' instruction budget.
@@ -209,12 +207,12 @@ std::string accel_line(const RenderReport& r) {
     const EventCounts& e = r.events;
     const auto rays = static_cast<double>(ray_count(e));
     const double tests = static_cast<double>(test_count(e)) / rays, steps = static_cast<double>(e[RAYA_STEPS]) / rays;
+    const std::string apart = a.apart ? fmt::format(", {} held apart", a.apart) : "";
     if (a.kind == AccelKind::kBvh)
-        return fmt::format("tree    {} nodes, {} leaves, depth {}; {:.1f} tests and {:.1f} nodes a ray\n", a.nodes,
-                           a.leaves, a.depth, tests, steps);
+        return fmt::format("tree    {} nodes, {} leaves, depth {}{}; {:.1f} tests and {:.1f} nodes a ray\n", a.nodes,
+                           a.leaves, a.depth, apart, tests, steps);
     return fmt::format("grid    {}x{}x{} voxels, {} copies of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
-                       a.divisions[0], a.divisions[1], a.divisions[2], a.copies,
-                       a.apart ? fmt::format(", {} held apart", a.apart) : "", tests, steps);
+                       a.divisions[0], a.divisions[1], a.divisions[2], a.copies, apart, tests, steps);
 }
 
 std::string scale_line(const RenderReport& r) {

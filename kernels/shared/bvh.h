@@ -21,10 +21,12 @@ typedef struct {
     // Largest coordinate of a ray's origin for which a hit is sure to lie in the boxes that its object is in; a ray
     // from farther away has to be tested against all objects. Below 0: every ray has to.
     float reach;
-    raya_u32 root;     // link
-    raya_u32 rows_at;  // distance of row 0 from the job's first word, a multiple of 16
+    raya_u32 root;      // link
+    raya_u32 apart;     // finite objects that are not in the tree, as every ray is tested against them
+    raya_u32 apart_at;  // their numbers, ascending: distance from the job's first word
+    raya_u32 rows_at;   // of row 0, a multiple of 16
 } raya_bvh;
-RAYA_SHARED_SIZE(raya_bvh, 4 * 3);
+RAYA_SHARED_SIZE(raya_bvh, 4 * 5);
 
 #define RAYA_BVH_WIDTH 16  // children of a node, objects of a leaf, words of a row
 
