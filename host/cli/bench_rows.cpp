@@ -12,23 +12,12 @@
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/ring/schedule.hpp"
+#include "host/study/measured.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
 
 namespace raya {
 namespace {
-
-// One sample is at least 20 ms, so that the clock and the launch do not count.
-double sample_seconds(const BenchRow& row) {
-    constexpr double kLeastSeconds = 0.02;
-    double seconds = 0;
-    int images = 0;
-    while (seconds < kLeastSeconds) {
-        seconds += row.image_s();
-        ++images;
-    }
-    return seconds / images;
-}
 
 std::string array_text(const RingSettings& s) {
     std::string text = fmt::format("{} PEs, {}, {} bounces", s.mapping.pes, mapping_text(s.mapping), s.bounces);
@@ -129,7 +118,7 @@ void check_rows(const std::vector<BenchRow>& rows) {
 
 void take_samples(std::vector<BenchRow>& rows, int samples) {
     for (int i = 0; i < samples; ++i)
-        for (BenchRow& row : rows) row.seconds.push_back(sample_seconds(row));
+        for (BenchRow& row : rows) row.seconds.push_back(sample_seconds(row.image_s));
     for (BenchRow& row : rows) std::sort(row.seconds.begin(), row.seconds.end());
 }
 

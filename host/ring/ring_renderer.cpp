@@ -30,12 +30,14 @@ PackedJob packed(const Session& session, const Scene& scene, const RingSettings&
 
 // What every PE holds of the scene.
 RingJob ring_job(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
-    RingJob all{packed(session, scene, settings, scale), {}};
+    RingJob all{packed(session, scene, settings, scale), {}, 0};
     if (settings.accel.kind == AccelKind::kNone) return all;
     const StepLog::Step step = session.step("divide scene");
+    const Clock::time_point start = Clock::now();
     all.accel = settings.accel.kind == AccelKind::kBvh
                     ? append_tree(all.job, settings.format)
                     : append_grid(all.job, accel_partition(all.job, settings.format, settings.accel));
+    all.accel_s = seconds_since(start);
     return all;
 }
 
@@ -278,6 +280,7 @@ void RingRenderer::describe(RingResult& result) {
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
     result.build_options = tracer_->build_options();
+    result.accel_s = job_.accel_s;
     result.build_s = build_s_;
     result.commands = session_.profile().summary();
 }

@@ -21,6 +21,7 @@ namespace raya {
 struct RingJob {
     PackedJob job;
     AccelSummary accel;
+    double accel_s = 0;  // measured: to make it
 };
 
 class RingRenderer {

@@ -38,11 +38,12 @@ struct RingResult {
     Communication communication;
     LengthScale scale;
     PeMemory pe_memory;
-    std::optional<AccelSummary> accel;  // of the grid that rays walked
+    std::optional<AccelSummary> accel;  // of the grid or tree that rays walked
     bool words_local = true;            // PEs copied the broadcast words into local memory at each launch
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
-    double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
+    // Measured on the host: to make the grid or tree; kernel build; everything after it.
+    double accel_s = 0, build_s = 0, render_s = 0;
     std::vector<LabelSummary> commands;
 
     /// Modelled cycles of each pixel in all phases.

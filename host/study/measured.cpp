@@ -15,19 +15,31 @@ namespace {
 constexpr int kReferenceRuns = 3, kDeviceRuns = 5;
 constexpr double kEnoughS = 10;  // of measuring: a large scene is not rendered again
 
-double median_of(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}  // namespace
+
+Measured measured_of(std::vector<double> seconds) {
+    std::sort(seconds.begin(), seconds.end());
+    const std::size_t middle = seconds.size() / 2;
+    const double median = seconds.size() % 2 == 1 ? seconds[middle] : (seconds[middle - 1] + seconds[middle]) / 2;
+    return {1e3 * seconds.front(), 1e3 * median, static_cast<int>(seconds.size())};
 }
 
-}  // namespace
+double sample_seconds(const std::function<double()>& seconds) {
+    constexpr double kLeastSeconds = 0.02;
+    double sum = 0;
+    int calls = 0;
+    while (sum < kLeastSeconds) {
+        sum += seconds();
+        ++calls;
+    }
+    return sum / calls;
+}
 
 Measured measure(int runs, double enough_s, const std::function<double()>& seconds) {
     std::vector<double> all = {seconds()};
     while (static_cast<int>(all.size()) < runs && std::accumulate(all.begin(), all.end(), 0.0) < enough_s)
         all.push_back(seconds());
-    return {1e3 * *std::min_element(all.begin(), all.end()), 1e3 * median_of(all), static_cast<int>(all.size())};
+    return measured_of(std::move(all));
 }
 
 Measured measure_reference(const LabelledScene& scene, std::uint32_t size) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "host/cl/commands.hpp"
 #include "host/machine/number_format.hpp"
@@ -13,6 +14,12 @@ struct Measured {
     double min_ms = 0, median_ms = 0;
     int runs = 0;
 };
+
+/// The least and the median of what was measured, seconds; one at least.
+Measured measured_of(std::vector<double> seconds);
+
+/// Mean seconds of one call, of as many as take 20 ms together: what lasts less, clock and launch would count in.
+double sample_seconds(const std::function<double()>& seconds);
 
 /// Of the seconds that up to `runs` calls tell, one at least; no further call once `enough_s` seconds of them are told.
 Measured measure(int runs, double enough_s, const std::function<double()>& seconds);

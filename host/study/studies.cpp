@@ -5,7 +5,7 @@
 namespace raya {
 
 std::span<const Study> studies() {
-    static const std::array<Study, 19> all = {{
+    static const std::array<Study, 20> all = {{
         {"fig7", "Load of each PE, column split and cyclic mapping", true, study_fig7},
         {"fig8", "Imbalance against the offset p", true, study_fig8},
         {"fig9", "Speed-up against the number of PEs, both folds, and the mappings of CAP and Pixel Machine", true,
@@ -24,6 +24,8 @@ std::span<const Study> studies() {
         {"divisions", "Time of one machine against the number of voxels, 64 to 1024 even spheres", false,
          study_divisions},
         {"havran", "Intersection tests and steps a ray in uniform grids, balls and lattice", false, study_havran},
+        {"accel", "Time, tests and memory of none, grid and bvh, 10 to 600,000 objects, beside Embree", false,
+         study_accel},
         {"objects", "Torus: time against the number of objects, even and random", true, study_objects},
         {"nodes", "Torus: 1 to 4096 nodes, speed-up, balance, hops, 2-D against 3-D", false, study_nodes},
         {"inject", "Torus: the root makes all primary rays, or all nodes do", true, study_inject},

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "host/study/accel_run.hpp"
 #include "host/study/grid_run.hpp"
 #include "host/study/laboratory.hpp"
 #include "host/study/page.hpp"
@@ -51,7 +52,7 @@ StudyPage scale_page(const std::string& scene, const CostImage& image);
 std::string need_of_2d(const std::string& best, const std::vector<std::uint32_t>& kept, std::size_t sizes);
 
 // Voxels in one machine.
-StudyFunction study_divisions, study_havran;
+StudyFunction study_divisions, study_havran, study_accel;
 
 /// `all`: of each scene the divisions in ascending order, two at least. `from_paper`: the scenes are of the paper's
 /// kind, with as many objects as the paper has, so that its figures stand beside ours; the last has 1024.
@@ -61,6 +62,10 @@ StudyPage divisions_page(std::uint32_t side, const std::vector<std::vector<GridR
 /// `runs`: one at least, those of one scene after one another, rendered with SPD's settings but `side`. Published
 /// figures stand beside those whose label and divisions are in paper::kHavran.
 StudyPage havran_page(std::uint32_t side, const std::vector<GridRun>& runs);
+
+/// `all`: of each scene every way that was measured, grid and bvh at least; groups of one series in ascending order of
+/// objects; those of one series that have several seeds have the same ones.
+StudyPage accel_page(const AccelSettings& settings, const AccelRuns& all);
 
 // The torus machine: Yoshitani & Yamazaki, and beyond.
 StudyFunction study_objects, study_nodes, study_inject, study_hybrid;

@@ -11,9 +11,6 @@ namespace raya {
 /// Exit code of a process that could not become this program.
 inline constexpr int kNotStarted = 127;
 
-/// "signal 11 (SIGSEGV)" or "exit code 1", of a status as waitpid() gives it.
-std::string ending_text(int status);
-
 /// A child that runs this program with other arguments and writes lines into a pipe. It ends when this object does, and
 /// when this process does, however that ends; signals that end a program (Ctrl-C) it leaves to this process.
 class OwnProcess {

@@ -9,6 +9,7 @@
 
 #include "host/error.hpp"
 #include "host/files/json.hpp"
+#include "host/files/program.hpp"
 #include "host/verify/own_process.hpp"
 
 namespace raya {
