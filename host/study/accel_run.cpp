@@ -6,7 +6,7 @@
 #include <memory>
 #include <numeric>
 
-#include "host/accel/accel.hpp"
+#include "host/machine/accel.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
 #include "host/ring/mapping.hpp"
