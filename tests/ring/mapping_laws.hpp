@@ -9,8 +9,8 @@
 namespace raya {
 
 /// How many pixels, of all that the PEs' shares list, lie outside the image, come twice, have another owner by
-/// raya_owner or by `defined(row, column)`, or another number by raya_index_of; and how many come in no share. Notes
-/// the size of each share.
+/// raya_owner or by `defined(row, column)`, another number by raya_index_of, or another place in a run of pixels; and
+/// how many come in no share. Notes the size of each share.
 template <class Defined>
 std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<std::uint32_t>& sizes) {
     std::vector<bool> seen(std::size_t{m.width} * m.height);
@@ -19,11 +19,14 @@ std::uint32_t strays(const raya_mapping& m, const Defined& defined, std::vector<
         const raya_share share = raya_share_of(m, pe);
         sizes.push_back(raya_share_size(share));
         if (sizes.back() > seen.size()) return ~0u;  // a size that wrapped round: no use in listing it
+        raya_pixel_run run{};
         for (std::uint32_t k = 0; k < sizes.back(); ++k) {
             const raya_pixel pixel = raya_pixel_of(m, share, k);
+            if (k % 7 != 3) run = k == 0 ? raya_pixel_run_of(m, share, k) : raya_pixel_run_at(run, m, share, k);
+            const bool run_is_here = k % 7 == 3 || (run.pixel.row == pixel.row && run.pixel.column == pixel.column);
             const bool inside = pixel.row < m.height && pixel.column < m.width;
             const std::size_t at = std::size_t{pixel.row} * m.width + pixel.column;
-            const bool good = inside && !seen[at] && raya_owner(m, pixel.row, pixel.column) == pe &&
+            const bool good = inside && run_is_here && !seen[at] && raya_owner(m, pixel.row, pixel.column) == pe &&
                               defined(pixel.row, pixel.column) == pe && raya_index_of(m, share, pixel) == k;
             if (inside) seen[at] = true;
             wrong += !good;

@@ -6,6 +6,7 @@
 #include "host/scene/generate.hpp"
 #include "host/study/statistics.hpp"
 #include "host/study/studies.hpp"
+#include "kernels/shared/bvh.h"
 #include "tests/files/scratch_folder.hpp"
 #include "tests/study/study_cases.hpp"
 
@@ -204,8 +205,13 @@ TEST_CASE("each way counts the same rays and fewer tests than all objects", "[st
         for (const AccelRun* way : {&grid, &bvh}) {
             CHECK(way->rays == none.rays);
             CHECK(way->objects == none.objects);
-            CHECK(way->tests_a_ray() < none.tests_a_ray());
-            CHECK(way->steps_a_ray() > 0);
+            if (way == &bvh && none.objects <= RAYA_BVH_WIDTH + 1) {  // one leaf, and the ground apart
+                CHECK(way->tests_a_ray() <= none.tests_a_ray());
+                CHECK(way->steps_a_ray() == 0);
+            } else {
+                CHECK(way->tests_a_ray() < none.tests_a_ray());
+                CHECK(way->steps_a_ray() > 0);
+            }
             CHECK(way->accel_words > 0);
             CHECK(way->scene_words >= none.scene_words);
             CHECK(way->scene_words <= none.scene_words + 3);  // a tree begins at a row of four words
