@@ -50,9 +50,10 @@ fail() { echo "FAILED: $*"; exit 1; }
 
 hash_of_report() { grep -o '"hash": "[0-9a-f]*"' "$scratch/report.json"; }
 
-check_run() {  # check_run SCENE OPTIONS OPTIONS_OF_THE_DEFAULT_DEVICE
-    local scene=$1 options=$2 wanted found
-    local render=(render "$root/scenes/$scene.nff" -o "$scratch/image.pfm" --report "$scratch/report.json" --quiet --size "$size")
+check_run() {  # check_run SCENE OPTIONS OPTIONS_OF_THE_DEFAULT_DEVICE     SCENE: one of scenes/, or a file
+    local scene=$1 options=$2 file=$1 wanted found
+    [[ -e $file ]] || file=$root/scenes/$scene.nff
+    local render=(render "$file" -o "$scratch/image.pfm" --report "$scratch/report.json" --quiet --size "$size")
     # shellcheck disable=SC2086  # several words
     "$raya" "${render[@]}" $3
     wanted=$(hash_of_report)
@@ -84,6 +85,13 @@ check_fault ring/trace.cl "pixels + (size_t)pe * capacity * 3" "pixels + (size_t
 for scene in "${scenes[@]}"; do
     for options in "${runs[@]}"; do check_run "$scene" "$options" "--lanes 1 --group 1 --pes 54"; done
 done
+# Down a tree of boxes of more than one level: spheres, polygons of 3, 4, 6 and 10 corners, patches and cones, mirrors among them.
+if [[ -n $thorough ]]; then
+    "$raya" generate balls --level 3 -o "$scratch/balls.nff"
+    { cat "$root/scenes/polygons.nff"; awk 'FNR == 1 { objects = 0 } /^f / { objects = 1 } objects' "$root/scenes/cones.nff" "$scratch/balls.nff"; } >"$scratch/kinds.nff"
+    for lanes in 1 4; do check_run "$scratch/kinds.nff" "--machine grande --accel bvh --lanes $lanes --group 3 --pes 2" "--machine grande"; done
+    check_fault bvh/descent.clh "p->top[lane] = 0;" ";" "uninitialized value" --machine grande --accel bvh --pes 2
+fi
 watch_values=
 for options in "${exchanges[@]}"; do
     # The same method on one large array by the default device.
@@ -100,4 +108,4 @@ check_run planes "--machine torus --nodes 2x1x2 --lanes 1 --group 4 --inject roo
 # Rays of several trees in a pool, lanes that take the next one.
 size=4
 check_run glass "--machine grande --accel grid --lanes 4 --group 3 --pes 2" "--machine grande"
-echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, the torus and the grid: nothing to report, the same images"
+echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, the torus, the grid${thorough:+ and the tree}: nothing to report, the same images"

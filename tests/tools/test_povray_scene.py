@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+"""tools/povray_scene.py: what it reads of NFF, how it cuts polygons, and that POV-Ray makes raya's picture of it.
+
+    tests/tools/test_povray_scene.py RAYA     RAYA: the built program. Exit code 77 where POV-Ray is missing (Debian: povray), if all else is right
+"""
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "tools"))
+import povray_scene as translation  # noqa: E402
+
+# Every kind of object and of surface; checkers on all axes, a concave polygon, an inside, glass, colours of lights given and not.
+SCENE = """# comment
+b 0.4 0.5 0.7
+v
+from 0.5 -9 4.6
+at 0.2 0 1.1
+up 0 0.1 1
+angle 40
+hither 1
+resolution 48 48
+l -6 -7 10 0.62 0.6 0.55
+l 6 -5 6
+f 0.8 0.75 0.65 0.85 0 0 0 1
+#raya checker 0.85 0.8 0.7 0.3 0.3 0.5 1.5
+#raya plane 0 0 2 0
+#raya checker 1 0.5 0.5 0.2 0.4 0.9 0.7
+p 4
+-3 -1 0  -3 3 0  -3 3 3  -3 -1 3
+#raya checker 0.5 1 0.5 0.9 0.4 0.2 0.7
+p 4 -3 3 0  3 3 0  3 3 3  -3 3 3
+f 0.45 0.25 0.12 0.7 0.2 30 0 1
+p 6
+1 2 0
+3 2 0
+3 2 1 # the notch
+2 2 1
+2 2 3
+1 2 3
+c -2.4 0.8 0 0.2   -2.4 0.8 0.8 0.2
+c -2.4 0.8 0.6 1   -2.4 0.8 1.9 0
+c 0.4 -1.3 0.1 -0.5  0.4 -1.3 1.4 -0.8
+s -0.5 1 0.8 0.8
+pp 3
+1.2 -1 1 -0.5 -1 0.5
+2.4 -1 1 0.5 -1 0.5
+1.8 -0.6 2 0 -1 0.8
+f 1 1 1 0.02 0.1 100 0.85 1.5
+s -1.5 -2 0.8 0.8
+"""
+
+# A text of the scene for POV-Ray that stands for what the translation does, and what would be wrong in its place.
+FAULTS = [("no_shadow", ""), ("max_trace_level 3", "max_trace_level 2"), ("texture { Clear } interior_texture", "texture"),
+          (" open ", " "), ("ior 1.5", "ior 1.0"), ("translate <-500000000.0, 0.0, 0.0>", "translate <-500000000.0, 0.5, 0.0>")]
+SIZE, BOUNCES = 96, 2
+
+
+def numbers_of_ppm(file):
+    """16 bits a colour, linear."""
+    data = file.read_bytes()
+    head = re.match(rb"P6\s(?:#.*\n)*\d+\s\d+\s(\d+)\s", data)
+    assert head[1] == b"65535", head
+    return [x[0] / 65535 for x in struct.iter_unpack(">H", data[head.end():])]
+
+
+def numbers_of_pfm(file):
+    """Clamped to what a PPM file holds, top row first."""
+    _, size, scale, data = file.read_bytes().split(b"\n", 3)
+    width, height = map(int, size.split())
+    row = 3 * width
+    given = struct.unpack(f"{'<' if float(scale) < 0 else '>'}{row * height}f", data)
+    return [min(1, max(0, x)) for y in reversed(range(height)) for x in given[y * row:(y + 1) * row]]
+
+
+def area(a, b, c):
+    return 0.5 * sum(x * x for x in translation.cross(translation.minus(b, a), translation.minus(c, a))) ** 0.5
+
+
+class Reading(unittest.TestCase):
+    scene = translation.parse_nff(SCENE)
+
+    def test_every_kind_with_its_numbers(self):
+        scene = self.scene
+        self.assertEqual(scene.view["from"], (0.5, -9, 4.6))
+        self.assertEqual((scene.view["angle"], scene.background), ((40,), (0.4, 0.5, 0.7)))
+        self.assertEqual(scene.lights, [((-6, -7, 10), (0.62, 0.6, 0.55)), ((6, -5, 6), None)])
+        self.assertEqual([sphere[:2] for sphere in scene.spheres], [((-0.5, 1, 0.8), 0.8), ((-1.5, -2, 0.8), 0.8)])
+        self.assertEqual([plane[:2] for plane in scene.planes], [((0, 0, 1), 0)])
+        self.assertEqual([len(polygon[0]) for polygon in scene.polygons], [4, 4, 6, 3])
+        self.assertEqual([cone[:4] for cone in scene.cones][1], ((-2.4, 0.8, 0.6), 1, (-2.4, 0.8, 1.9), 0))
+
+    def test_surfaces_and_their_checkers(self):
+        matt, glass = translation.Surface((0.8, 0.75, 0.65), 0.85, 0, 0, 0, 1), self.scene.spheres[1][2]
+        self.assertEqual((glass.transmittance, glass.refraction, glass.shine), (0.85, 1.5, 100))
+        self.assertEqual([surface.axis for *_, surface in self.scene.planes + self.scene.polygons], [2, 0, 1, None, None])
+        self.assertEqual(self.scene.planes[0][2].checker, (0.85, 0.8, 0.7, 0.3, 0.3, 0.5, 1.5))
+        self.assertEqual(self.scene.planes[0][2].colour, matt.colour)
+
+    def test_normals_of_patches_have_length_1(self):
+        *_, (vertices, normals, _) = self.scene.polygons
+        self.assertEqual(vertices[1], (2.4, -1, 1))
+        self.assertAlmostEqual(sum(x * x for x in normals[1]), 1)
+        self.assertIsNone(self.scene.polygons[0][1])
+
+    def test_what_is_no_nff_is_refused_with_its_line(self):
+        for text, line, reason in [("b 0 0 0\ntt 1", 2, "unknown entity 'tt'"), ("b 0 0\n\nl 1 1 1", 3, "'l' where a number should be"),
+                                   ("s 1 1 1", 1, "the file ends"), ("plane 0 0 1 0", 1, "unknown entity 'plane'"), ("b 0 0 0", 1, "no 'v'"),
+                                   ("v from 0 0 0 from", 1, "'from' in 'v'")]:
+            with self.assertRaisesRegex(translation.SceneError, f"x.nff:{line}: {reason}"):
+                translation.parse_nff(text, "x.nff")
+
+    def test_polygons_without_area_are_left_out(self):
+        self.assertEqual(translation.parse_nff(SCENE + "p 3 0 0 0 1 1 1 2 2 2\np 2 0 0 0 1 0 0\n"), self.scene)
+
+
+class Triangles(unittest.TestCase):
+    # A comb: every second corner is one at which the outline turns the other way.
+    comb = [(0, 0), (6, 0), (6, 3), (5, 3), (5, 1), (4, 1), (4, 3), (3, 3), (3, 1), (2, 1), (2, 3), (0, 3)]
+
+    def cut(self, vertices, wanted):
+        found = translation.triangles(vertices)
+        self.assertEqual(len(found), len(vertices) - 2)
+        self.assertAlmostEqual(sum(area(*(vertices[i] for i in corners)) for corners in found), wanted)  # none overlap, none lie outside
+
+    def test_concave_outlines_on_all_axes_either_way_round(self):
+        for place in (lambda u, v: (1.0, u, v), lambda u, v: (v, 1.0, u), lambda u, v: (u, v, 1.0), lambda u, v: (u, v, u + v)):
+            slope = 3 ** 0.5 if place(1, 1) == (1, 1, 2) else 1
+            outline = [place(u, v) for u, v in self.comb]
+            for shift in range(len(outline)):
+                self.cut(outline[shift:] + outline[:shift], 14 * slope)
+                self.cut((outline[shift:] + outline[:shift])[::-1], 14 * slope)
+
+    def test_a_hole_joined_to_the_outline_by_a_cut(self):
+        outline = [(0, 0), (4, 0), (4, 4), (0, 4), (0, 0), (1, 1), (1, 2), (2, 2), (2, 1), (1, 1)]
+        self.cut([(u, v, 0.0) for u, v in outline], 15)
+
+
+class Picture(unittest.TestCase):
+    def setUp(self):
+        if not shutil.which("povray"):
+            self.skipTest("no povray (Debian: povray)")
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        (self.folder / "scene.nff").write_text(SCENE)
+        subprocess.run([RAYA, "render", "scene.nff", "-o", "raya.pfm", "--machine", "grande", "--format", "fp32", "--lanes", "1", "--size", str(SIZE),
+                        "--bounces", str(BOUNCES), "--quiet"], cwd=self.folder, check=True)
+        self.wanted = numbers_of_pfm(self.folder / "raya.pfm")
+
+    def pixels_that_differ(self, text):
+        """The share of colours that are not raya's."""
+        (self.folder / "scene.pov").write_text(text)
+        command = ["povray", "+Iscene.pov", "+Opovray.ppm", "+FP16", "File_Gamma=1.0", f"+W{SIZE}", f"+H{SIZE}", "-A", "-D", "-V", "-GA"]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = numbers_of_ppm(self.folder / "povray.ppm")
+        self.assertEqual(len(found), len(self.wanted))
+        return sum(abs(a - b) > 0.002 for a, b in zip(found, self.wanted)) / len(found)
+
+    def test_it_is_rayas_and_faults_in_the_translation_show(self):
+        text = translation.povray_scene(translation.parse_nff(SCENE), BOUNCES, SIZE, SIZE)
+        self.assertLess(self.pixels_that_differ(text), 0.001)
+        for old, new in FAULTS:
+            self.assertIn(old, text)
+            with self.subTest(old=old, new=new):
+                self.assertGreater(self.pixels_that_differ(text.replace(old, new)), 0.01)
+
+
+if __name__ == "__main__":
+    RAYA = str(Path(sys.argv[1]).resolve())
+    outcome = unittest.main(argv=sys.argv[:1], exit=False).result
+    sys.exit(1 if not outcome.wasSuccessful() else 77 if outcome.skipped else 0)

@@ -1,0 +1,313 @@
+#!/usr/bin/env python3
+"""Writes an NFF file (host/scene/nff_reader.hpp) as a scene of POV-Ray 3.7 that makes the same picture.
+
+    tools/povray_scene.py SCENE.nff BOUNCES WxH     the scene on stdout, for a picture of W x H pixels
+
+What POV-Ray understands otherwise than kernels/README.md, and what is done about it:
+
+- a surface that transmits T keeps 1 - T of its own colour: Kd is divided by that (all of it is lost where T is 1);
+- light passes through what transmits: it throws no shadow, an opaque twin does that no ray but a shadow ray sees;
+- which side of a surface is glass follows from the way of the ray, through objects within objects, not from normals;
+- an object is seen from both sides: one of a negative radius is clear outside, where a ray goes through and loses a level;
+- polygons are cut into triangles, those of one surface make one mesh: POV-Ray finds its way in meshes fastest;
+- checkers are cubes: they are stretched along the axis that does not count.
+
+Entities of other dialects are refused, with their line.
+"""
+import math
+import sys
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+LONG = 1e9  # a cube of a checker along the axis that does not count; NFF's numbers end here
+
+
+class SceneError(Exception):
+    """What is wrong with a file, in words."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """`f` of NFF, and the checker in place of its colour."""
+
+    colour: tuple = (1.0, 1.0, 1.0)
+    diffuse: float = 1.0
+    specular: float = 0.0
+    shine: float = 0.0
+    transmittance: float = 0.0
+    refraction: float = 1.0
+    checker: tuple = None  # even r g b, odd r g b, size
+    axis: int = None  # that does not count for the checker
+
+
+@dataclass
+class Scene:
+    """Objects by kind, each with its surface in the end."""
+
+    view: dict = field(default_factory=dict)
+    background: tuple = (0.0, 0.0, 0.0)
+    lights: list = field(default_factory=list)  # (position, colour or nothing)
+    spheres: list = field(default_factory=list)  # (centre, radius, surface)
+    planes: list = field(default_factory=list)  # (normal, distance, surface)
+    polygons: list = field(default_factory=list)  # (vertices, normals or nothing, surface)
+    cones: list = field(default_factory=list)  # (base, radius, apex, radius, surface)
+
+
+# Vectors, as tuples of three.
+def minus(a, b):
+    return tuple(x - y for x, y in zip(a, b))
+
+
+def times(s, a):
+    return tuple(s * x for x in a)
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def normalized(a):
+    length = math.hypot(*a)
+    return times(1 / length, a) if length > 0 else a
+
+
+def newell_normal(vertices):
+    """Not of length 1: that is twice the area."""
+    total = (0.0, 0.0, 0.0)
+    for a, b in zip(vertices, vertices[1:] + vertices[:1]):
+        total = tuple(t + c for t, c in zip(total, cross(a, b)))
+    return total
+
+
+def largest_axis(normal):
+    """The axis of the largest component, of equals the first."""
+    return max(range(3), key=lambda axis: abs(normal[axis]))
+
+
+class Words:
+    """The words of a file, without comments, each with its line."""
+
+    def __init__(self, text, name):
+        self.name, self.at, self.words = name, 0, []
+        for number, line in enumerate(text.splitlines(), 1):
+            plain = line if line.split()[:1] == ["#raya"] else line.partition("#")[0]
+            self.words += [(word, number) for word in plain.split()]
+
+    def refuse(self, reason):
+        line = self.words[max(0, self.at - 1)][1] if self.words else 1
+        raise SceneError(f"{self.name}:{line}: {reason}")
+
+    def left(self):
+        return self.at < len(self.words)
+
+    def take(self):
+        if not self.left():
+            self.refuse("the file ends within an entity")
+        self.at += 1
+        return self.words[self.at - 1][0]
+
+    def number(self):
+        word = self.take()
+        try:
+            return float(word)
+        except ValueError:
+            self.refuse(f"'{word}' where a number should be")
+
+    def numbers(self, count):
+        return tuple(self.number() for _ in range(count))
+
+    def number_follows(self):
+        return self.left() and self.words[self.at][0].lstrip("+-").lstrip(".")[:1].isdigit()
+
+
+def take_view(words):
+    parts = {"from": 3, "at": 3, "up": 3, "angle": 1, "hither": 1, "resolution": 2}
+    view = {}
+    while len(view) < len(parts):
+        part = words.take()
+        if part not in parts or part in view:
+            words.refuse(f"'{part}' in 'v'")
+        view[part] = words.numbers(parts[part])
+    return view
+
+
+def take_polygon(words, patch):
+    """(vertices, normals or nothing)."""
+    corners = [words.numbers(6 if patch else 3) for _ in range(int(words.number()))]
+    normals = [normalized(corner[3:]) for corner in corners] if patch else None
+    return [corner[:3] for corner in corners], normals
+
+
+def parse_nff(text, name="scene"):
+    """The scene that an NFF file describes."""
+    words, scene, surface, checker = Words(text, name), Scene(), Surface(), None
+
+    def flat_surface(normal):
+        """That of a plane or polygon: the checker that waits is its own."""
+        nonlocal checker
+        squares, checker = checker, None
+        return replace(surface, checker=squares, axis=largest_axis(normal)) if squares else surface
+
+    while words.left():
+        entity = words.take()
+        entity += " " + words.take() if entity == "#raya" else ""
+        if entity == "v":
+            scene.view = take_view(words)
+        elif entity == "b":
+            scene.background = words.numbers(3)
+        elif entity == "l":
+            scene.lights.append((words.numbers(3), words.numbers(3) if words.number_follows() else None))
+        elif entity == "f":
+            surface = Surface(words.numbers(3), *words.numbers(5))
+        elif entity == "s":
+            scene.spheres.append((words.numbers(3), words.number(), surface))
+        elif entity in ("p", "pp"):
+            vertices, normals = take_polygon(words, entity == "pp")
+            normal = newell_normal(vertices)
+            own = flat_surface(normal)
+            if any(normal):  # else nothing of it is seen
+                scene.polygons.append((vertices, normals, own))
+        elif entity == "c":
+            scene.cones.append((words.numbers(3), words.number(), words.numbers(3), words.number(), surface))
+        elif entity == "#raya plane":
+            normal, distance = words.numbers(3), words.number()
+            scene.planes.append((normalized(normal), distance / math.hypot(*normal), flat_surface(normal)))
+        elif entity == "#raya checker":
+            checker = words.numbers(7)
+        else:
+            words.refuse(f"unknown entity '{entity}'")
+    if not scene.view:
+        words.refuse("no 'v'")
+    return scene
+
+
+def triangles(vertices):
+    """Triples of corners' numbers, also of an outline that is not convex: ears are cut off until three corners remain."""
+    normal = newell_normal(vertices)
+    axis = largest_axis(normal)
+    turn = math.copysign(1, normal[axis])
+    flat = [(v[(axis + 1) % 3], turn * v[(axis + 2) % 3]) for v in vertices]  # counter-clockwise
+
+    def area(a, b, c):
+        return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+    def is_ear(corner, rest):
+        a, b, c = (flat[i] for i in corner)
+        others = (flat[i] for i in rest if flat[i] not in (a, b, c))
+        return area(a, b, c) > 0 and not any(min(area(a, b, p), area(b, c, p), area(c, a, p)) >= 0 for p in others)
+
+    rest, found = list(range(len(vertices))), []
+    while len(rest) > 3:
+        corners = [(rest[i - 1], rest[i], rest[(i + 1) % len(rest)]) for i in range(len(rest))]
+        ear = next((corner for corner in corners if is_ear(corner, rest)), corners[1])  # some outlines are not simple
+        found.append(ear)
+        rest.remove(ear[1])
+    return found + [tuple(rest)]
+
+
+def vector(v):
+    return "<" + ", ".join(f"{x!r}" for x in v) + ">"
+
+
+class Surfaces:
+    """Textures and interiors, each declared once."""
+
+    def __init__(self, ambient):
+        self.ambient, self.numbers = ambient, {}
+
+    def number(self, surface):
+        return self.numbers.setdefault(surface, len(self.numbers))
+
+    def pigment(self, surface):
+        clear = f" transmit {surface.transmittance!r}" if surface.transmittance > 0 else ""
+        if not surface.checker:
+            return f"color rgb {vector(surface.colour)}{clear}"
+        even, odd, size = surface.checker[:3], surface.checker[3:6], surface.checker[6]
+        stretch = tuple(LONG if axis == surface.axis else size for axis in range(3))
+        shift = tuple(-LONG / 2 if axis == surface.axis else 0.0 for axis in range(3))
+        return f"checker color rgb {vector(even)}{clear} color rgb {vector(odd)}{clear} scale {vector(stretch)} translate {vector(shift)}"
+
+    def finish(self, surface):
+        opacity = 1 - surface.transmittance
+        diffuse = surface.diffuse / opacity if opacity != 0 else 0.0
+        shiny = f" phong {surface.specular!r} phong_size {surface.shine!r} reflection {{ {surface.specular!r} }}" if surface.specular > 0 else ""
+        return f"ambient {self.ambient * diffuse!r} diffuse {diffuse!r}{shiny}"
+
+    def declarations(self):
+        for surface, number in self.numbers.items():
+            yield f"#declare Surface{number} = texture {{ pigment {{ {self.pigment(surface)} }} finish {{ {self.finish(surface)} }} }}"
+
+    def solid(self, shape, surface, inside_only=False):
+        """The text of an object, or of two: the second throws the shadow of one that transmits."""
+        texture = f"texture {{ Surface{self.number(surface)} }}"
+        if inside_only:
+            texture = "texture { Clear } interior_" + texture
+        if surface.transmittance <= 0:
+            return [f"{shape} {texture} }}"]
+        interior = f"interior {{ ior {surface.refraction!r} }}"
+        return [f"{shape} {texture} {interior} no_shadow }}", f"{shape} no_image no_reflection }}"]
+
+
+def camera(view, width, height):
+    """Right and up span the whole picture, at the distance 1 along the gaze; as NFF is, without a change of hands."""
+    gaze = normalized(minus(view["at"], view["from"]))
+    right = normalized(cross(gaze, view["up"]))
+    tall = 2 * math.tan(math.radians(view["angle"][0]) / 2)
+    parts = {"location": view["from"], "direction": gaze, "right": times(tall * width / height, right), "up": times(tall, cross(right, gaze))}
+    return "camera { perspective " + " ".join(f"{name} {vector(value)}" for name, value in parts.items()) + " }"
+
+
+def meshes(polygons, surfaces):
+    """One mesh for each surface."""
+    by_surface = {}
+    for vertices, normals, surface in polygons:
+        faces = by_surface.setdefault(surface, [])
+        for corners in triangles(vertices):
+            if normals:
+                faces.append("smooth_triangle { " + ", ".join(f"{vector(vertices[i])}, {vector(normals[i])}" for i in corners) + " }")
+            else:
+                faces.append("triangle { " + ", ".join(vector(vertices[i]) for i in corners) + " }")
+    for surface, faces in by_surface.items():
+        yield from surfaces.solid("mesh { " + "\n".join(faces), surface)
+
+
+def objects(scene, surfaces):
+    for centre, radius, surface in scene.spheres:
+        yield from surfaces.solid(f"sphere {{ {vector(centre)}, {abs(radius)!r}", surface, radius < 0)
+    for normal, distance, surface in scene.planes:
+        yield from surfaces.solid(f"plane {{ {vector(normal)}, {distance!r}", surface)
+    yield from meshes(scene.polygons, surfaces)
+    for base, base_radius, apex, apex_radius, surface in scene.cones:
+        shape = f"cone {{ {vector(base)}, {abs(base_radius)!r}, {vector(apex)}, {abs(apex_radius)!r} open"
+        if base_radius == apex_radius:
+            shape = f"cylinder {{ {vector(base)}, {vector(apex)}, {abs(base_radius)!r} open"
+        yield from surfaces.solid(shape, surface, min(base_radius, apex_radius) < 0)
+
+
+def povray_scene(scene, bounces, width, height):
+    """The text of a scene for POV-Ray."""
+    count = len(scene.lights)
+    usual = math.sqrt(count) / (2 * count) if count else 1.0  # SPD's
+    surfaces = Surfaces(usual)
+    solids = list(objects(scene, surfaces))
+    lights = [f"light_source {{ {vector(position)} color rgb {vector(colour or 3 * (usual,))} }}" for position, colour in scene.lights]
+    head = ["#version 3.7;",
+            f"global_settings {{ assumed_gamma 1 max_trace_level {bounces + 1} adc_bailout 0 ambient_light rgb 1 }}",
+            f"background {{ color rgb {vector(scene.background)} }}",
+            "#declare Clear = texture { pigment { color rgb 1 transmit 1 } finish { ambient 0 diffuse 0 } }",
+            camera(scene.view, width, height)]
+    return "\n".join([*head, *lights, *surfaces.declarations(), *solids]) + "\n"
+
+
+def main():
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    file, bounces, (width, height) = Path(sys.argv[1]), int(sys.argv[2]), map(int, sys.argv[3].split("x"))
+    try:
+        print(povray_scene(parse_nff(file.read_text(), file.name), bounces, width, height), end="")
+    except (SceneError, OSError) as problem:
+        sys.exit(f"povray_scene.py: {problem}")
+
+
+if __name__ == "__main__":
+    main()
