@@ -49,6 +49,8 @@ struct Scale {
     }
 };
 
+using Bins = std::array<Bin, kBins>;  // along an axis
+
 std::array<Scale, 3> scales_of(std::span<const TreeItem> items) {
     std::array<Scale, 3> scales;
     for (const TreeItem& item : items)
@@ -70,7 +72,7 @@ struct Cut {
     std::size_t axis = 0, last = 0;
 };
 
-void find_cut(Cut& best, std::size_t axis, const std::array<Bin, kBins>& bins) {
+void find_cut(Cut& best, std::size_t axis, const Bins& bins) {
     std::array<float, kBins> above{};  // cost of the bins behind each
     Bin sum;
     for (std::size_t b = kBins - 1; b > 0; --b) {
@@ -109,11 +111,22 @@ Parts cut_by_kind(const Part& part) {
     return halves_at(part, static_cast<std::size_t>(others - part.items.begin()));
 }
 
+// Items in the bins up to `last`, and the others; their boxes are those of the bins.
+Parts cut_at(const Part& part, const Cut& at, const Bins& bins, const Scale& scale) {
+    const auto others = std::partition(part.items.begin(), part.items.end(), [&](const TreeItem& item) {
+        return scale.bin(middle(item, at.axis)) <= at.last;
+    });
+    const auto items = static_cast<std::size_t>(others - part.items.begin());
+    Parts parts{{{part.items.first(items), kNowhere}, {part.items.subspan(items), kNowhere}}};
+    for (std::size_t b = 0; b < kBins; ++b) extend(parts[b <= at.last ? 0 : 1].box, bins[b].box);
+    return parts;
+}
+
 Parts cut(const Part& part, std::uint32_t depth) {
     if (part.items.size() <= RAYA_BVH_WIDTH && !part.is_of_one_kind()) return cut_by_kind(part);
     if (depth >= kEvenFrom) return even_halves(part);
     const std::array<Scale, 3> scales = scales_of(part.items);
-    std::array<std::array<Bin, kBins>, 3> bins;
+    std::array<Bins, 3> bins;
     for (const TreeItem& item : part.items)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             Bin& bin = bins[axis][scales[axis].bin(middle(item, axis))];
@@ -123,10 +136,7 @@ Parts cut(const Part& part, std::uint32_t depth) {
     Cut best;
     for (std::size_t axis = 0; axis < 3; ++axis) find_cut(best, axis, bins[axis]);
     if (best.cost == kInfinity) return even_halves(part);
-    const auto others = std::partition(part.items.begin(), part.items.end(), [&](const TreeItem& item) {
-        return scales[best.axis].bin(middle(item, best.axis)) <= best.last;
-    });
-    return halves_at(part, static_cast<std::size_t>(others - part.items.begin()));
+    return cut_at(part, best, bins[best.axis], scales[best.axis]);
 }
 
 class TreeBuilder {

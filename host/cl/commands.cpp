@@ -152,6 +152,10 @@ CommandRecord Session::finished(const Pending& pending) const {
     return record;
 }
 
+void Session::flush() {
+    guarded("handing commands to the device", [this] { queue_.flush(); });
+}
+
 void Session::finish() {
     const std::vector<Pending> done = std::exchange(pending_, {});  // also gone if one of them has failed
     guarded("waiting for the device", [this] { queue_.finish(); });

@@ -118,6 +118,9 @@ class Session {
     /// A step of the host, from now to the end of the scope that it is kept in; for the log of observe(), else nothing.
     [[nodiscard]] StepLog::Step step(const std::string& name) const { return StepLog::Step(steps_, name); }
 
+    /// Has the device begin with all commands so far, which a driver may put off. Does not wait.
+    void flush();
+
     /// Waits for all commands. DeviceError names the label of a command that failed on the device.
     void finish();
 

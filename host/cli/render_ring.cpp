@@ -110,6 +110,7 @@ void render_on_ring(const RenderCommand& command) {
     bar.reset();
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
+    const ProgressBar tracing(!command.quiet && watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
 }
 

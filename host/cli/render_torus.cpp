@@ -124,6 +124,7 @@ void render_on_torus(const RenderCommand& command) {
     bar.reset();
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
+    const ProgressBar tracing(!command.quiet && watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& file) { trace->add_to(file, result, command.trace.pes); });
 }
 

@@ -49,7 +49,7 @@ void ProgressBar::update(double done) {
 void ProgressBar::draw_until_ended() {
     using namespace std::chrono_literals;
     std::unique_lock lock(mutex_);
-    for (auto pause = 1000ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
+    for (auto pause = 700ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
         show_status(progress_line(what_, done_, std::chrono::duration<double>(Clock::now() - stage_began_).count()));
     clear_status();
 }

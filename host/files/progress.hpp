@@ -16,7 +16,7 @@ using ProgressCallback = std::function<void(double)>;
 /// What is drawn of `what` that began `seconds` ago, of which a share is done where that is known.
 std::string progress_line(const std::string& what, std::optional<double> done, double seconds);
 
-/// Draws on stderr, only if that is a terminal: from one second on, five times a second, whatever the command is about.
+/// Draws on stderr, only if that is a terminal: within a second, five times a second, whatever the command is about.
 /// What runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of
 /// scope; who prints before that clears it (say.hpp).
 class ProgressBar {

@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 #include "host/error.hpp"
@@ -27,6 +29,23 @@ int read_field(const std::string& text, std::size_t& at, char letter) {
     if (error != std::errc{}) refuse(text);
     at = static_cast<std::size_t>(end - text.data());
     return value;
+}
+
+constexpr int kDoubleFraction = 52, kDoubleBias = 1023;
+
+// Of a normal double.
+double power_of_two(int exponent) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFraction);
+}
+
+// To so many bits behind the leading one; of two that are equally near, the one that ends in 0. A carry out of the
+// fraction makes the next power of two, or infinity. Denormal doubles are below every format.
+double with_fraction_bits(double value, int bits, bool truncates) {
+    const int dropped = kDoubleFraction - bits;
+    auto pattern = std::bit_cast<std::uint64_t>(value);
+    const std::uint64_t unit = std::uint64_t{1} << dropped;
+    if (!truncates) pattern += unit / 2 - 1 + (pattern >> dropped & 1);
+    return std::bit_cast<double>(pattern & ~(unit - 1));
 }
 
 }  // namespace
@@ -60,16 +79,10 @@ double farthest_hit(const NumberFormat& format) {
 float round_to_format(double value, const NumberFormat& format) {
     if (std::isnan(value)) throw std::invalid_argument("NaN has no number in any format");
     const int highest = (1 << (format.exponent_bits - 1)) - 1, lowest = 1 - highest;
-    const double largest = std::ldexp(2 - std::ldexp(1, -format.fraction_bits), highest);
-    if (std::abs(value) > largest) return static_cast<float>(std::copysign(largest, value));
-    if (value == 0) return static_cast<float>(value);
-    const int exponent = std::ilogb(value);
-    const double units = std::ldexp(value, format.fraction_bits - exponent);  // exact
-    const double whole =
-        format.truncates ? std::trunc(units) : std::nearbyint(units);  // the default mode: ties to even
-    const double rounded = std::ldexp(whole, exponent - format.fraction_bits);
+    const double rounded = with_fraction_bits(value, format.fraction_bits, format.truncates);
+    const double largest = (2 - power_of_two(-format.fraction_bits)) * power_of_two(highest);
     if (std::abs(rounded) > largest) return static_cast<float>(std::copysign(largest, value));
-    if (std::abs(rounded) < std::ldexp(1, lowest)) return static_cast<float>(std::copysign(0.0, value));
+    if (std::abs(rounded) < power_of_two(lowest)) return static_cast<float>(std::copysign(0.0, value));
     return static_cast<float>(rounded);
 }
 

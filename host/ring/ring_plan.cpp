@@ -37,14 +37,14 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device) {
     return settings;
 }
 
-std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes,
-                           std::uint32_t share) {
-    if (settings.pixels_per_launch) return settings.pixels_per_launch;
+Slices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share) {
+    if (const std::uint32_t pixels = settings.pixels_per_launch) return {pixels, pixels, pixels};
     constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
     constexpr double kRaysPerPixel = 6;      // of the project's scenes
     const double tests_of_one = kRaysPerPixel * static_cast<double>(objects) * settings.mapping.pes;
     const auto affordable = static_cast<std::uint32_t>(std::min(kTestsPerLaunch / tests_of_one, double(share)));
-    return std::clamp(affordable, std::min(8 * lanes, share), share);
+    const std::uint32_t least = std::min(8 * lanes, share);  // below, lanes are idle too often at the end of a launch
+    return {std::min(lanes, share), least, std::clamp(affordable, least, share)};
 }
 
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,

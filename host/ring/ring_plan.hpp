@@ -3,6 +3,7 @@
 #include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/ring/ring_settings.hpp"
+#include "host/ring/tracer.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
 
@@ -17,7 +18,7 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device);
 /// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress
 /// bar moves, Ctrl-C is heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few
 /// wait for the last.
-std::uint32_t slice_pixels(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
+Slices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
 
 /// `accel`: what was made of settings.accel.
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,

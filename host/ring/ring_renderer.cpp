@@ -9,6 +9,7 @@
 #include "host/accel/tree_words.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
+#include "host/ring/pixel_walk.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/ring/schedule.hpp"
 
@@ -41,18 +42,9 @@ RingJob ring_job(const Session& session, const Scene& scene, const RingSettings&
     return all;
 }
 
-// Calls `move` for each pixel of a range of every PE's share, with its number in the device's layout [PE][window] and
-// in the image.
-template <class Move>
-void for_each_pixel(const raya_mapping& m, PixelRange range, std::uint32_t window, Move&& move) {
-    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
-        const raya_share share = raya_share_of(m, pe);
-        const std::uint32_t end = std::min(raya_share_size(share), range.end);
-        for (std::uint32_t k = range.begin; k < end; ++k) {
-            const raya_pixel at = raya_pixel_of(m, share, k);
-            move(std::size_t{pe} * window + (k - range.block), std::size_t{at.row} * m.width + at.column);
-        }
-    }
+Image black(const raya_mapping& m) {
+    return {static_cast<int>(m.width), static_cast<int>(m.height),
+            std::vector<float>(3 * std::size_t{m.width} * m.height)};
 }
 
 // Of large images the device holds a part of what the PEs' memories do, so that it and the host need not hold all
@@ -102,10 +94,10 @@ void RingRenderer::build(const Scene& scene) {
     Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
         kernels, settings_.mapping.pes, window_,
-        slice_pixels(settings_,
-                     settings_.accel.kind != AccelKind::kNone ? std::min<std::size_t>(20, scene.object_count())
-                                                              : scene.object_count(),
-                     options.lanes * options.group_size, window_));
+        slices(settings_,
+               settings_.accel.kind != AccelKind::kNone ? std::min<std::size_t>(20, scene.object_count())
+                                                        : scene.object_count(),
+               options.lanes * options.group_size, window_));
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.job.words());
     tracer_->clear(counters_.front());
@@ -143,10 +135,12 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
     for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) render_block(block, result, progress);
+    place_gathered(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
     if (settings_.dynamic) simulate_schedule(result);
     result.render_s = seconds_since(start);
+    gathered_ = {};
     describe(result);
     return result;
 }
@@ -167,13 +161,10 @@ void RingRenderer::render_block(std::uint32_t block, RingResult& result, const P
 
 void RingRenderer::prepare(RingResult& result) {
     const StepLog::Step step = session_.step("prepare");
-    const auto width = static_cast<int>(settings_.mapping.width), height = static_cast<int>(settings_.mapping.height);
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
-    result.image = {width, height, std::vector<float>(3 * pixels)};
     const CostImage none{settings_.mapping.width, settings_.mapping.height,
                          std::vector<std::uint64_t>(keeps_costs() ? pixels : 0)};
     if (counters_.size() > 1) result.all.cost = none;
-    if (contrast_) result.mask = result.image;
     for (PassCounters& counters : counters_) {
         Phase phase;
         phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
@@ -204,17 +195,25 @@ void RingRenderer::supersample(const ProgressCallback& progress) {
 void RingRenderer::gather(PixelRange range, RingResult& result) {
     const StepLog::Step step = session_.step("gather");
     const raya_mapping& m = settings_.mapping;
-    std::vector<float> pixels(pixels_.size());
+    session_.flush();  // the device traces while the host takes memory, whose first use is slow, or places pixels
+    if (result.image.rgb.empty()) result.image = black(m);
+    place_gathered(result);
+    gathered_.resize(pixels_.size());
+    gathered_range_ = range;
     std::uint64_t owned = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
         owned += share > range.begin ? std::min(share, range.end) - range.begin : 0;
     }
-    bus_.gather(pixels_, pixels, 3 * owned);
-    for_each_pixel(m, range, window_, [&](std::size_t from, std::size_t to) {
-        std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
+    bus_.gather(pixels_, gathered_, 3 * owned);
+}
+
+void RingRenderer::place_gathered(RingResult& result) {
+    for_each_pixel(settings_.mapping, gathered_range_, window_, [&](std::size_t from, std::size_t to) {
+        std::copy_n(gathered_.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
                     result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
     });
+    gathered_range_ = {};
 }
 
 // What the kernels counted is read by the host to be reported: no transfer of the machine.
@@ -233,6 +232,7 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
 
 void RingRenderer::collect_marks(RingResult& result) {
     const StepLog::Step step = session_.step("collect marks");
+    result.mask = black(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
     for_each_pixel(settings_.mapping, {0, 0, share_}, window_, [&](std::size_t from, std::size_t to) {

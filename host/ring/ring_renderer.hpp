@@ -45,6 +45,7 @@ class RingRenderer {
     void trace(PixelRange range, const ProgressCallback& progress);
     void supersample(const ProgressCallback& progress);
     void gather(PixelRange range, RingResult& result);
+    void place_gathered(RingResult& result);
     void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
@@ -63,7 +64,9 @@ class RingRenderer {
     Bus bus_;
     double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;
-    Buffer<float> pixels_;        // [PE][block_pixels][3]
+    Buffer<float> pixels_;         // [PE][block_pixels][3]
+    std::vector<float> gathered_;  // on their way from there into the image: those of a range
+    PixelRange gathered_range_;
     Buffer<std::uint8_t> marks_;  // what the first pass is given in place of marks
     std::unique_ptr<Tracer> tracer_;
     std::vector<PassCounters> counters_;  // of each phase

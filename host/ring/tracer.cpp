@@ -1,15 +1,29 @@
 #include "host/ring/tracer.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 namespace raya {
+namespace {
 
-Tracer::Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice)
+using Clock = std::chrono::steady_clock;
+
+// After one of `slice` pixels that took `seconds`.
+std::uint32_t next_slice(const Slices& slices, std::uint32_t slice, double seconds) {
+    constexpr double kSeconds = 0.5, kMostGrowth = 4;
+    const double growth = seconds * kMostGrowth > kSeconds ? kSeconds / seconds : kMostGrowth;
+    return std::clamp(static_cast<std::uint32_t>(std::min(growth * slice, 1.0 * slices.most)), slices.least,
+                      slices.most);
+}
+
+}  // namespace
+
+Tracer::Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const Slices& slices)
     : session_(kernels.session()),
       options_(kernels.options()),
       pes_(pes),
       capacity_(capacity),
-      slice_(slice),
+      slices_(slices),
       build_options_(kernels.program(TraceKernel::kFile).options()),
       kernel_(kernels.get<TraceKernel>()) {}
 
@@ -31,12 +45,15 @@ void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t
 void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                    const ProgressCallback& progress) {
-    for (std::uint32_t begin = range.begin; begin < range.end; begin += slice_) {
-        const std::uint32_t end = std::min(range.end, begin + slice_);
+    std::uint32_t slice = progress ? slices_.first : slices_.most;
+    for (std::uint32_t begin = range.begin, end; begin < range.end; begin = end) {
+        end = begin + std::min(range.end - begin, slice);
+        const Clock::time_point start = Clock::now();
         launch(label, job, {range.block, begin, end}, points, marks, pixels, counters);
         if (!progress) continue;
         session_.finish();
         progress(static_cast<double>(end - range.begin) / (range.end - range.begin));
+        slice = next_slice(slices_, slice, std::chrono::duration<double>(Clock::now() - start).count());
     }
 }
 

@@ -1,4 +1,4 @@
-// The trace kernel: built for a job and a device, and launched in slices that each last about a second at most.
+// The trace kernel: built for a job and a device, and launched in slices.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -23,6 +23,12 @@ struct PixelRange {
     std::uint32_t block = 0, begin = 0, end = 0;
 };
 
+/// Pixels of each share that one launch traces: `most`; where somebody watches how far it has come, `first` and then as
+/// many, from `least` on, as half a second is enough for.
+struct Slices {
+    std::uint32_t first = 0, least = 0, most = 0;
+};
+
 using TraceKernel =
     DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">, Uint<"block">,
                     Uint<"capacity">, Uint<"begin">, Uint<"end">, Uint<"points">, const Buffer<std::uint8_t>&,
@@ -30,8 +36,8 @@ using TraceKernel =
 
 class Tracer {
   public:
-    /// `capacity`: pixels in the memory of each PE. `slice`: pixels of each share that one launch traces.
-    Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, std::uint32_t slice);
+    /// `capacity`: pixels in the memory of each PE.
+    Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const Slices& slices);
 
     /// Counters of a pass, all 0.
     PassCounters make_counters(const std::string& pass) const;
@@ -56,7 +62,8 @@ class Tracer {
 
     Session& session_;
     KernelOptions options_;
-    std::uint32_t pes_, capacity_, slice_;
+    std::uint32_t pes_, capacity_;
+    Slices slices_;
     std::string build_options_;
     TraceKernel kernel_;
 };

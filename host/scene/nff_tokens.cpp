@@ -135,7 +135,9 @@ bool NffTokens::skip_unknown() {
 bool NffTokens::number_follows() const { return reads_as_number(next_.text); }
 
 double NffTokens::take_number(std::string_view what) {
-    const bool cut_short = !number_follows() && next_.first_on_line && !one_line_;
+    const ParsedNumber number = parsed_number(next_.text);
+    const bool no_number = number.error == std::errc::invalid_argument;
+    const bool cut_short = no_number && next_.first_on_line && !one_line_;
     const NffToken token = take_part(what);
     const auto refused = [&](std::string_view reason) {
         refuse(token.line, fmt::format("{} of {}: {} {}", what, in_quotes(entity_), in_quotes(token.text), reason));
@@ -143,8 +145,7 @@ double NffTokens::take_number(std::string_view what) {
     if (cut_short)
         refuse(token.line, fmt::format("{} of line {} is cut short: {} stands where {} should be", in_quotes(entity_),
                                        entity_line_, in_quotes(token.text), what));
-    const ParsedNumber number = parsed_number(token.text);
-    if (number.error == std::errc::invalid_argument) refused("is not a number");
+    if (no_number) refused("is not a number");
     if (number.error == std::errc::result_out_of_range) refused("is outside the range of double precision");
     if (!number.rest.empty()) refused("is a number with something after it");
     if (!std::isfinite(number.value)) refused("is not a finite number");

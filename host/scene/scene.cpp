@@ -30,13 +30,15 @@ SurfaceKey surface_key(const Surface& s) {
 void share_surfaces(Scene& scene) {
     const std::vector<Surface> before = std::exchange(scene.surfaces, {});
     std::map<SurfaceKey, int> numbers;
+    std::vector<int> known(before.size(), -1);  // the number of each surface from before that has been met
+    const auto number_of = [&](std::size_t surface) {
+        if (known.at(surface) >= 0) return known[surface];
+        const auto [entry, added] = numbers.try_emplace(surface_key(before[surface]), static_cast<int>(numbers.size()));
+        if (added) scene.surfaces.push_back(before[surface]);
+        return known[surface] = entry->second;
+    };
     const auto renumber = [&](auto& objects) {
-        for (auto& object : objects) {
-            const Surface& surface = before.at(static_cast<std::size_t>(object.surface));
-            const auto [entry, added] = numbers.try_emplace(surface_key(surface), static_cast<int>(numbers.size()));
-            if (added) scene.surfaces.push_back(surface);
-            object.surface = entry->second;
-        }
+        for (auto& object : objects) object.surface = number_of(static_cast<std::size_t>(object.surface));
     };
     renumber(scene.spheres);
     renumber(scene.planes);

@@ -80,9 +80,10 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
     const std::vector<Row> rows = {{{"render"}, render},
                                    {{"bench"}, bench},
                                    {{"devices"}, {"every OpenCL device of every platform"}},
-                                   {{"generate"}, {"balls", "lattice", "uniform", "random", "centre"}},
+                                   {{"generate"}, {"balls", "lattice", "gears", "uniform", "random", "centre"}},
                                    {{"generate", "balls"}, {"--level LEVEL=4", "0..6", "7,381 spheres", "SCENE.nff"}},
                                    {{"generate", "lattice"}, {"--size N=12", "1..64", "2,197 spheres", "SCENE.nff"}},
+                                   {{"generate", "gears"}, {"--size N=4", "1..16", "9,345 polygons", "SCENE.nff"}},
                                    {{"generate", "uniform"}, {"1..1000000", "--voxels XxYxZ", "1..256 each"}},
                                    {{"generate", "random"}, {"1..1000000", "--seed N=1"}},
                                    {{"generate", "centre"}, {"-o,--output SCENE.nff"}}};
@@ -144,7 +145,7 @@ TEST_CASE("--profile prints launches and times of every labelled command", "[cli
 
 TEST_CASE("what generate makes can be rendered", "[cli]") {
     const Words kind =
-        GENERATE(Words{"balls", "--level", "1"}, Words{"lattice", "--size", "2"},
+        GENERATE(Words{"balls", "--level", "1"}, Words{"lattice", "--size", "2"}, Words{"gears", "--size", "1"},
                  Words{"uniform", "9", "--voxels", "2x2x2"}, Words{"random", "9", "--seed", "3"}, Words{"centre"});
     const ScratchFolder folder;
     Words arguments = {"generate"};

@@ -108,6 +108,7 @@ TEST_CASE("bench and generate refuse numbers outside their ranges", "[cli]") {
     check_refused(outputs, {"bench", "--samples", "1", "--lanes", "3"}, 2, {"--lanes 3", "1, 4, 8 or 16"});
     check_refused(outputs, {"generate", "balls", "--level", "7", "-o", scene}, 2, {"level 7", "0..6"});
     check_refused(outputs, {"generate", "balls", "--level", "-1", "-o", scene}, 2, {"level -1", "0..6"});
+    check_refused(outputs, {"generate", "gears", "--size", "17", "-o", scene}, 2, {"size 17", "1..16"});
     check_refused(outputs, {"generate", "balls"}, 2, {"--output is required"});
     check_refused(outputs, {"generate", "uniform", "9", "--voxels", "2x2", "-o", scene}, 2, {"--voxels 2x2", "XxYxZ"});
     check_refused(outputs, {"generate", "uniform", "9", "--voxels", "257x1x1", "-o", scene}, 2,

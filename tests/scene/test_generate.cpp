@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -7,12 +8,15 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/nff_writer.hpp"
+#include "host/scene/outline.hpp"
+#include "host/scene/polygon_plane.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/paths.h"
 
@@ -25,6 +29,40 @@ double gap(const Sphere& a, const Sphere& b) { return (a.centre - b.centre).leng
 std::filesystem::path spd_folder() {
     const char* given = std::getenv("RAYA_SPD_DIR");
     return given ? given : RAYA_SOURCE_DIR "/../shared/spd";
+}
+
+using Point = std::tuple<double, double, double>;
+
+Point point(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+std::size_t triangles_of(const Scene& scene) {
+    std::size_t triangles = 0;
+    for (const Polygon& polygon : scene.polygons) triangles += polygon.vertices.size() - 2;
+    return triangles;
+}
+
+double turn_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Whether edges of two outlines cross, seen from above.
+bool cross(const Polygon& one, const Polygon& other) {
+    const auto ends = [](const Polygon& polygon, std::size_t i) {
+        return std::pair{polygon.vertices[i], polygon.vertices[(i + 1) % polygon.vertices.size()]};
+    };
+    for (std::size_t i = 0; i < one.vertices.size(); ++i)
+        for (std::size_t j = 0; j < other.vertices.size(); ++j) {
+            const auto [a, b] = ends(one, i);
+            const auto [c, d] = ends(other, j);
+            if (turn_of(a, b, c) * turn_of(a, b, d) <= 0 && turn_of(c, d, a) * turn_of(c, d, b) <= 0) return true;
+        }
+    return false;
+}
+
+Vec3 middle_of(const Polygon& polygon) {
+    Vec3 sum(0);
+    for (const Vec3& v : polygon.vertices) sum += v;
+    return sum / static_cast<double>(polygon.vertices.size());
 }
 
 /// The voxel in which the whole sphere lies, or -1.
@@ -146,6 +184,61 @@ TEST_CASE("lattice: the same scene in the same order as SPD's file", "[generate]
     CHECK(ours.surfaces == theirs.surfaces);
 }
 
+TEST_CASE("gears: as many polygons as SPD's, flat outlines of 144 vertices and quadrilaterals", "[generate]") {
+    for (const int size : {1, 2, 4}) {
+        CAPTURE(size);
+        const Scene s = generate_gears(size);
+        const auto wheels = static_cast<std::size_t>(size * size * size);
+        CHECK(s.polygons.size() == 146 * wheels + 1);
+        CHECK(triangles_of(s) == 572 * wheels + 2);
+        CHECK(std::count_if(s.polygons.begin(), s.polygons.end(),
+                            [](const Polygon& p) { return p.vertices.size() == 144; }) == 2 * size * size * size);
+        CHECK(s.lights.size() == 5);
+        for (Polygon polygon : s.polygons) {
+            const Polygon given = polygon;
+            REQUIRE(tidy_outline(polygon).reason.empty());
+            REQUIRE(polygon == given);
+        }
+    }
+    CHECK(generate_gears(4).polygons.size() == 9345);
+    CHECK(triangles_of(generate_gears(4)) == 36610);
+    CHECK(generate_gears(3).surfaces.size() == 5);
+}
+
+TEST_CASE("gears: wheels are closed, and show their fronts to the outside", "[generate]") {
+    const Scene s = generate_gears(2);
+    std::set<std::pair<Point, Point>> edges;
+    double volume = 0;
+    for (std::size_t i = 1; i < s.polygons.size(); ++i) {  // 0 is the ground
+        const std::vector<Vec3>& corners = s.polygons[i].vertices;
+        for (std::size_t at = 0; at < corners.size(); ++at)
+            REQUIRE(edges.insert({point(corners[at]), point(corners[(at + 1) % corners.size()])}).second);
+        volume += corners[0].dot(newell_normal(corners)) / 6;
+    }
+    for (const auto& [from, to] : edges) REQUIRE(edges.contains({to, from}));
+    const double disc = 3.14159265 * 0.5 * 0.5 * 0.4;  // a wheel without teeth: radius a half, distance 1
+    CHECK(volume == Approx(8 * disc).epsilon(0.05));
+}
+
+TEST_CASE("gears: teeth stand in the neighbours' gaps and touch nothing", "[generate]") {
+    const Scene s = generate_gears(2);
+    std::vector<Polygon> layer;  // the upper faces of the lower wheels
+    for (std::size_t wheel = 0; wheel < 8; wheel += 2) layer.push_back(s.polygons[1 + 146 * wheel]);
+    double reach = 0;  // of a wheel from its axis
+    for (const Vec3& v : layer[0].vertices) reach = std::max(reach, (v - middle_of(layer[0])).length());
+    for (std::size_t i = 0; i < layer.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            CAPTURE(i, j);
+            CHECK_FALSE(cross(layer[i], layer[j]));
+            const Vec3 apart = middle_of(layer[i]) - middle_of(layer[j]);
+            CHECK(apart.z == 0);
+            if (i + j == 3) continue;  // across the diagonal
+            double nearest = apart.length();
+            for (const Vec3& v : layer[i].vertices) nearest = std::min(nearest, (v - middle_of(layer[j])).length());
+            CHECK(nearest < 0.97 * reach);
+        }
+}
+
 TEST_CASE("uniform: equal shares of voxels, whole spheres, no two alike or touching", "[generate]") {
     struct Row {
         int count;
@@ -209,7 +302,7 @@ TEST_CASE("centre: the committed file is what the generator makes", "[generate]"
 }
 
 TEST_CASE("generated scenes read back equal", "[generate]") {
-    for (const Scene& s : {generate_balls(3), generate_lattice(4), generate_uniform(100, {3, 3, 3}),
+    for (const Scene& s : {generate_balls(3), generate_lattice(4), generate_gears(2), generate_uniform(100, {3, 3, 3}),
                            generate_random(100, 1), generate_centre()})
         CHECK(parse_nff(write_nff(s), s.name) == s);
 }
@@ -219,6 +312,8 @@ TEST_CASE("generators refuse what is out of range", "[generate]") {
     CHECK_THROWS_WITH(generate_balls(7), "balls: level 7: must lie in 0..6");
     CHECK_THROWS_WITH(generate_lattice(0), "lattice: size 0: must lie in 1..64");
     CHECK_THROWS_WITH(generate_lattice(65), "lattice: size 65: must lie in 1..64");
+    CHECK_THROWS_WITH(generate_gears(0), "gears: size 0: must lie in 1..16");
+    CHECK_THROWS_WITH(generate_gears(17), "gears: size 17: must lie in 1..16");
     CHECK_THROWS_WITH(generate_random(0, 1), "random: 0 spheres: must lie in 1..1000000");
     CHECK_THROWS_WITH(generate_uniform(1000001, {1, 1, 1}), "uniform: 1000001 spheres: must lie in 1..1000000");
     CHECK_THROWS_WITH(generate_uniform(1, {1, 0, 1}), "uniform: 0 voxels along an axis: must lie in 1..256");

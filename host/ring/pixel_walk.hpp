@@ -1,0 +1,32 @@
+// Where the pixels that the PEs hold lie in the image.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "host/ring/tracer.hpp"
+#include "kernels/shared/mapping.h"
+
+namespace raya {
+
+/// Calls `move` for each pixel of a range of every PE's share, with its number in the device's layout [PE][window] and
+/// in the image. Some PEs at a time: where neighbours own neighbouring columns, what is near in the image is moved
+/// together.
+template <class Move>
+void for_each_pixel(const raya_mapping& m, PixelRange range, std::uint32_t window, Move&& move) {
+    constexpr std::uint32_t kTogether = 16;
+    for (std::uint32_t first = 0; first < m.pes; first += kTogether) {
+        const std::uint32_t pes = std::min(kTogether, m.pes - first);
+        std::array<raya_share, kTogether> shares{};
+        for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, first + i);
+        for (std::uint32_t k = range.begin; k < range.end; ++k)
+            for (std::uint32_t i = 0; i < pes; ++i) {
+                if (k >= raya_share_size(shares[i])) continue;
+                const raya_pixel at = raya_pixel_of(m, shares[i], k);
+                move(std::size_t{first + i} * window + (k - range.block), std::size_t{at.row} * m.width + at.column);
+            }
+    }
+}
+
+}  // namespace raya
