@@ -37,7 +37,7 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device) {
     return settings;
 }
 
-Slices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share) {
+LaunchSlices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share) {
     if (const std::uint32_t pixels = settings.pixels_per_launch) return {pixels, pixels, pixels};
     constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
     constexpr double kRaysPerPixel = 6;      // of the project's scenes

@@ -18,7 +18,7 @@ RingSettings checked(RingSettings settings, const DeviceInfo& device);
 /// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress
 /// bar moves, Ctrl-C is heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few
 /// wait for the last.
-Slices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
+LaunchSlices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
 
 /// `accel`: what was made of settings.accel.
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,

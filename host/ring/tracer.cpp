@@ -9,7 +9,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // After one of `slice` pixels that took `seconds`.
-std::uint32_t next_slice(const Slices& slices, std::uint32_t slice, double seconds) {
+std::uint32_t next_slice(const LaunchSlices& slices, std::uint32_t slice, double seconds) {
     constexpr double kSeconds = 0.5, kMostGrowth = 4;
     const double growth = seconds * kMostGrowth > kSeconds ? kSeconds / seconds : kMostGrowth;
     return std::clamp(static_cast<std::uint32_t>(std::min(growth * slice, 1.0 * slices.most)), slices.least,
@@ -18,7 +18,7 @@ std::uint32_t next_slice(const Slices& slices, std::uint32_t slice, double secon
 
 }  // namespace
 
-Tracer::Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const Slices& slices)
+Tracer::Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const LaunchSlices& slices)
     : session_(kernels.session()),
       options_(kernels.options()),
       pes_(pes),

@@ -25,7 +25,7 @@ struct PixelRange {
 
 /// Pixels of each share that one launch traces: `most`; where somebody watches how far it has come, `first` and then as
 /// many, from `least` on, as half a second is enough for.
-struct Slices {
+struct LaunchSlices {
     std::uint32_t first = 0, least = 0, most = 0;
 };
 
@@ -37,7 +37,7 @@ using TraceKernel =
 class Tracer {
   public:
     /// `capacity`: pixels in the memory of each PE.
-    Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const Slices& slices);
+    Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const LaunchSlices& slices);
 
     /// Counters of a pass, all 0.
     PassCounters make_counters(const std::string& pass) const;
@@ -63,7 +63,7 @@ class Tracer {
     Session& session_;
     KernelOptions options_;
     std::uint32_t pes_, capacity_;
-    Slices slices_;
+    LaunchSlices slices_;
     std::string build_options_;
     TraceKernel kernel_;
 };
