@@ -28,7 +28,7 @@ void hits_by_grid(__global const uint* restrict job,
     ray_pool pool;
     clear_tree(&t);
     open_pool(&pool);
-    put_rays(job, &pool, 0, &t, r.limit > 0.0f, r, 0);
+    put_rays(job, &pool, 0, &t, r.limit > 0.0f, &r, 0);
     find_hits(job, &pool, 0);
     const hit h = take_hit(&pool, 0, &t);
     store_index(objects + first, 1, h.object);

@@ -57,7 +57,7 @@ static inline void put_trees(words scene, tree* trees, ray_pool* pool) {
         const mask walking = trees[i].walking;
         const ray r = {vec_of_lanes(trees[i].ray.origin), vec_of_lanes(trees[i].ray.direction),
                        choose(walking, num_const(RAYA_FAR), num_const(0.0f))};
-        put_rays(scene, pool, i, &trees[i], walking, r, 0);
+        put_rays(scene, pool, i, &trees[i], walking, &r, 0);
     }
 }
 
