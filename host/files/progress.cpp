@@ -10,14 +10,16 @@
 
 namespace raya {
 
-std::string progress_line(const std::string& what, std::optional<double> done, double seconds) {
+std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds) {
     constexpr int kWidth = 40;
     constexpr double kEnough = 0.001;  // of the work: from less nothing can be said of the rest
-    const double share = done.value_or(0);
+    const double share = done ? done->share : 0;
     if (share < kEnough) return fmt::format("{} ... {:.0f} s", what, seconds);
     const int filled = static_cast<int>(share * kWidth);
-    return fmt::format("[{}{}] {:3.0f} %  {:.0f} s left", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-                       std::min(99.0, std::floor(100 * share)), seconds * (1 - share) / share);
+    const double left = done->seconds / share - seconds;
+    return fmt::format("[{}{}] {:3.0f} %  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+                       std::min(99.0, std::floor(100 * share)),
+                       left > 0 ? fmt::format("{:.0f} s left", left) : fmt::format("{:.0f} s so far", seconds));
 }
 
 ProgressBar::ProgressBar(bool wanted, const std::string& what) : what_(what) {
@@ -43,14 +45,17 @@ void ProgressBar::stage(const std::string& what) {
 
 void ProgressBar::update(double done) {
     const std::lock_guard lock(mutex_);
-    done_ = std::max(done_.value_or(0), std::clamp(done, 0.0, 1.0));
+    const double share = std::clamp(done, 0.0, 1.0);
+    if (!done_ || share > done_->share) done_ = {share, stage_seconds()};
 }
+
+double ProgressBar::stage_seconds() const { return std::chrono::duration<double>(Clock::now() - stage_began_).count(); }
 
 void ProgressBar::draw_until_ended() {
     using namespace std::chrono_literals;
     std::unique_lock lock(mutex_);
     for (auto pause = 700ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
-        show_status(progress_line(what_, done_, std::chrono::duration<double>(Clock::now() - stage_began_).count()));
+        show_status(progress_line(what_, done_, stage_seconds()));
     clear_status();
 }
 

@@ -13,8 +13,13 @@ namespace raya {
 /// Called now and then with the share of the work that is done, 0..1.
 using ProgressCallback = std::function<void(double)>;
 
-/// What is drawn of `what` that began `seconds` ago, of which a share is done where that is known.
-std::string progress_line(const std::string& what, std::optional<double> done, double seconds);
+/// What of the work was done, and in how many seconds.
+struct Done {
+    double share = 0, seconds = 0;
+};
+
+/// What is drawn of `what` that began `seconds` ago, of which something is done where that is known.
+std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds);
 
 /// Draws on stderr, only if that is a terminal: within a second, five times a second, whatever the command is about.
 /// What runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of
@@ -38,13 +43,14 @@ class ProgressBar {
   private:
     using Clock = std::chrono::steady_clock;
     void draw_until_ended();
+    double stage_seconds() const;
 
     std::mutex mutex_;  // of all below
     std::condition_variable end_;
     bool ended_ = false;
     std::string what_;
     Clock::time_point stage_began_ = Clock::now();
-    std::optional<double> done_;
+    std::optional<Done> done_;
     std::thread drawer_;
 };
 
