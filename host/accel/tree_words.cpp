@@ -66,12 +66,13 @@ const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number) {
 
 // What kind of leaf an object goes to.
 std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uint32_t number) {
+    constexpr std::uint32_t kManyCorners = 16;
     const raya_objects& objects = job.header().objects;
-    if (!format.is_fp32()) return RAYA_LINK_OBJECT;
-    if (number < objects.spheres) return RAYA_LINK_SPHERES;
-    if (number >= objects.spheres + objects.planes + objects.polygons) return RAYA_LINK_CONES;
-    const bool is_face = polygon_words(job, number)[RAYA_POLYGON_CORNERS] <= RAYA_BVH_MOST_CORNERS;
-    return is_face ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
+    const bool is_polygon = number >= objects.spheres && number < objects.spheres + objects.planes + objects.polygons;
+    const std::uint32_t corners = is_polygon ? polygon_words(job, number)[RAYA_POLYGON_CORNERS] : 0;
+    if (!format.is_fp32()) return corners > kManyCorners ? RAYA_LINK_POLYGON : RAYA_LINK_OBJECT;
+    if (is_polygon) return corners <= RAYA_BVH_MOST_CORNERS ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
+    return number < objects.spheres ? RAYA_LINK_SPHERES : RAYA_LINK_CONES;
 }
 
 // Lays a tree out row by row: a node, what its children hold, and so on.

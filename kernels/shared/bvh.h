@@ -9,7 +9,8 @@
 //     a polygon          of more corners: a row of what is said once, then its corners, one in each column
 //
 // In a reduced format a test costs ten times what it costs in fp32, and a box still what it does: links lead to other
-// nodes or to single objects by their numbers, and V rays test an object each.
+// nodes or to single objects by their numbers, and V rays test an object each; a polygon of more than 16 corners has its
+// leaf.
 //
 // Columns of a node that no child has hold a box that no ray meets; columns of a leaf beyond its last object repeat the
 // first.
