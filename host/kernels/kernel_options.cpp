@@ -40,7 +40,7 @@ std::uint32_t default_group_size(const DeviceInfo& device) {
     return device.type == "cpu" ? 1 : static_cast<std::uint32_t>(std::min<std::size_t>(32, device.max_group_size));
 }
 
-bool sphere_filter_holds(const NumberFormat& format, double extent) {
+bool filters_hold(const NumberFormat& format, double extent) {
     constexpr int kFewestBits = 10;
     const double room =
         std::ldexp(1.0, (1 << (format.exponent_bits - 2)) - 2);  // a quarter of the square root of the largest number

@@ -22,7 +22,7 @@ struct KernelOptions {
     bool words_local = true;   // PEs take the broadcast words into local memory
     std::uint32_t accel = RAYA_ACCEL_NONE;  // what the job has for rays to walk through
     std::uint32_t stack = 0;                // RAYA_BVH_STACK: links that wait while a ray goes down the tree, at most
-    bool filter = false;       // spheres are filtered in fp32 before the exact test, see sphere_filter_holds
+    bool filter = false;  // spheres and polygons are filtered in fp32 before the exact test, see filters_hold
     bool polygons = true, patches = true, cones = true;
 };
 
@@ -30,7 +30,7 @@ struct KernelOptions {
 struct KernelChoice {
     std::uint32_t lanes = 0;       // V: 1, 4, 8 or 16; 0: chosen from the device
     std::uint32_t group_size = 0;  // L: 1..64 work-items; 0: chosen from the device
-    bool filter = true;            // the sphere filter, where it holds: the same hits, sooner
+    bool filter = true;            // the filters, where they hold: the same hits, sooner
     // What a device has may be left alone, so that what kernels do without it is tested on any.
     bool local_words = true;       // words in local memory, where they fit
     bool exact_arithmetic = true;  // the device's own division, square root and a b + c, where it rounds them correctly
@@ -43,10 +43,10 @@ std::uint32_t default_lanes(const DeviceInfo& device);
 /// L: 1 on a CPU, where lanes do its work, 32 elsewhere.
 std::uint32_t default_group_size(const DeviceInfo& device);
 
-/// Whether the bounds of kernels/geometry/sphere_filter.clh hold: a reduced format of 10 fraction bits or more, and a
-/// scene whose extent (scene units) leaves room for squares. The filter changes the time of a render only, no bit of
-/// it.
-bool sphere_filter_holds(const NumberFormat& format, double extent);
+/// Whether the bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh hold: a reduced format of 10
+/// fraction bits or more, and a scene whose extent (scene units) leaves room for squares. They change the time of a
+/// render only, no bit of it.
+bool filters_hold(const NumberFormat& format, double extent);
 
 /// Throws UserError for lanes other than 1, 4, 8, 16, a group size outside 1..64 or above the device's limit, more than
 /// 31 bounces.

@@ -58,8 +58,8 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .words_local = settings.kernels.local_words && words_local(job, device, settings.accel.kind),
             .accel = static_cast<std::uint32_t>(settings.accel.kind),
             .stack = (RAYA_BVH_WIDTH - 1) * accel.depth,
-            .filter = settings.kernels.filter && job.header().objects.spheres > 0 &&
-                      sphere_filter_holds(settings.format, job.header().extent),
+            .filter = settings.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
+                      filters_hold(settings.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones()};

@@ -44,8 +44,8 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
             .exact_divide = s.kernels.exact_arithmetic,
             .exact_fma = s.kernels.exact_arithmetic,
             .words_local = s.kernels.local_words,
-            .filter = s.kernels.filter && job.header().objects.spheres > 0 &&
-                      sphere_filter_holds(s.format, job.header().extent),
+            .filter = s.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
+                      filters_hold(s.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones()};

@@ -16,17 +16,17 @@ static inline mask differs(real a, real b, real threshold) {
 }
 
 // mark |= differs, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
-__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1))) void mark_contrasts(
-    __global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
-    const uint side,                          // RAYA_LEFT..RAYA_BELOW
-    const uint distance,                      // the block comes from PE (i + distance) mod P
-    const uint begin,                         // number in its share of the block's first pixel
-    const uint band,                          // pixels in the block
-    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
-    const float threshold,                    // a number of the format, 0..1
-    __global const float* restrict arrived,   // [PE][band][3]
-    __global const float* restrict pixels,    // [PE][capacity][3]
-    __global uchar* restrict marks)           // [PE][capacity]: set to 1 where the pixel differs
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void mark_contrasts(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
+                    const uint side,                          // RAYA_LEFT..RAYA_BELOW
+                    const uint distance,                      // the block comes from PE (i + distance) mod P
+                    const uint begin,                         // number in its share of the block's first pixel
+                    const uint band,                          // pixels in the block
+                    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                    const float threshold,                    // a number of the format, 0..1
+                    __global const float* restrict arrived,   // [PE][band][3]
+                    __global const float* restrict pixels,    // [PE][capacity][3]
+                    __global uchar* restrict marks)           // [PE][capacity]: set to 1 where the pixel differs
 {
     const uint pe = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;

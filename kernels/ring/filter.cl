@@ -12,15 +12,15 @@
 #include "kernels/ring/arrived.clh"
 
 // sum += neighbour, for the PE's pixels whose neighbour on `side` is in the block that has arrived.
-__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1))) void add_neighbours(
-    __global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
-    const uint side,                          // RAYA_LEFT..RAYA_BELOW
-    const uint distance,                      // the block comes from PE (i + distance) mod P
-    const uint begin,                         // number in its share of the block's first pixel
-    const uint band,                          // pixels in the block
-    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
-    __global const float* restrict arrived,   // [PE][band][3]
-    __global float* restrict sums)            // [PE][capacity][3]: added to
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void add_neighbours(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
+                    const uint side,                          // RAYA_LEFT..RAYA_BELOW
+                    const uint distance,                      // the block comes from PE (i + distance) mod P
+                    const uint begin,                         // number in its share of the block's first pixel
+                    const uint band,                          // pixels in the block
+                    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                    __global const float* restrict arrived,   // [PE][band][3]
+                    __global float* restrict sums)            // [PE][capacity][3]: added to
 {
     const uint pe = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
@@ -38,10 +38,10 @@ __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1))) void add_neighb
 }
 
 // sum / (pixels of the neighbourhood that lie in the image)
-__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1))) void take_means(
-    __global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
-    const uint capacity,                      // pixels in a PE's memory; 0: do nothing
-    __global float* restrict sums)            // [PE][capacity][3]: sums on entry, means on return
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void take_means(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
+                const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                __global float* restrict sums)            // [PE][capacity][3]: sums on entry, means on return
 {
     const uint pe = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;

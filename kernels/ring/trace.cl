@@ -83,21 +83,21 @@ static inline void trace_share(words scene, pixel_store* store, volatile __local
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1))) void trace(
-    __global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h), the same for all PEs
-    const uint word_count,                    // how many
-    const uint block,                         // number in the share of the first pixel of a PE's block
-    const uint capacity,                      // pixels in a block
-    const uint begin,                         // pixels `begin` to `end` - 1 of each share are traced now;
-    const uint end,                           // they lie in the block
-    const uint points,                        // RAYA_POINTS_*: which points of them
-    __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; of no use
-                                              // for RAYA_POINTS_OWN
-    __local uint* memory,                     // the number of the PE's next pixel, then, where
-                                              // RAYA_WORDS_LOCAL is 1, word_count words
-    __global float* restrict pixels,          // [PE][capacity][3]: linear rgb; read where points are new
-    __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels traced now
-    __global ulong* restrict events)          // [PE][work-item][RAYA_EVENTS], added to
+__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
+void trace(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h), the same for all PEs
+           const uint word_count,                    // how many
+           const uint block,                         // number in the share of the first pixel of a PE's block
+           const uint capacity,                      // pixels in a block
+           const uint begin,                         // pixels `begin` to `end` - 1 of each share are traced now;
+           const uint end,                           // they lie in the block
+           const uint points,                        // RAYA_POINTS_*: which points of them
+           __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; of no use
+                                                     // for RAYA_POINTS_OWN
+           __local uint* memory,                     // the number of the PE's next pixel, then, where
+                                                     // RAYA_WORDS_LOCAL is 1, word_count words
+           __global float* restrict pixels,          // [PE][capacity][3]: linear rgb; read where points are new
+           __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels traced now
+           __global ulong* restrict events)          // [PE][work-item][RAYA_EVENTS], added to
 {
     // An argument, not a __local variable: with PoCL 3.1 pixels were lost where a function that
     // took its address was not inlined.

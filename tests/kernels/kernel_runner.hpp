@@ -27,6 +27,7 @@ struct Variant {
     bool optimised = true;
     NumberFormat format{};
     std::vector<SourcePatch> patches{};
+    std::vector<std::string> more_options{};
 
     std::string name() const {
         return fmt::format("{} {} lanes{}", format_name(format), lanes, optimised ? "" : ", -cl-opt-disable");
@@ -58,7 +59,8 @@ class KernelRunner : private OwnSession, public CheckRunner {
         options.words_local = false;  // where the words lie is the ring's business, not that of the pieces
         KernelSources sources;
         sources.patches = variant.patches;
-        if (!variant.optimised) sources.more_options = {"-cl-opt-disable"};
+        sources.more_options = variant.more_options;
+        if (!variant.optimised) sources.more_options.emplace_back("-cl-opt-disable");
         return Kernels(session, options, sources).build(file, {std::istreambuf_iterator<char>(in), {}});
     }
 };

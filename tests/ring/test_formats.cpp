@@ -68,12 +68,12 @@ TEST_CASE("the sphere filter finds the same among many spheres", "[ring]") {
 
 TEST_CASE("the sphere filter is off where its bounds do not hold", "[ring]") {
     const NumberFormat spa22 = parse_format("spa22");
-    CHECK(sphere_filter_holds(spa22, 16384));
-    CHECK_FALSE(sphere_filter_holds(spa22, 16385));
-    CHECK_FALSE(sphere_filter_holds(parse_format("fp32"), 1));
-    CHECK_FALSE(sphere_filter_holds(parse_format("e6m9"), 1));
-    CHECK(sphere_filter_holds(parse_format("e5m10"), 64));
-    CHECK_FALSE(sphere_filter_holds(parse_format("e5m10"), 65));
+    CHECK(filters_hold(spa22, 16384));
+    CHECK_FALSE(filters_hold(spa22, 16385));
+    CHECK_FALSE(filters_hold(parse_format("fp32"), 1));
+    CHECK_FALSE(filters_hold(parse_format("e6m9"), 1));
+    CHECK(filters_hold(parse_format("e5m10"), 64));
+    CHECK_FALSE(filters_hold(parse_format("e5m10"), 65));
 }
 
 TEST_CASE("spa22 pictures show neither acne nor light leaks", "[ring]") {

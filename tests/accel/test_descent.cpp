@@ -1,0 +1,129 @@
+// The descent down the tree of boxes: rays aimed at silhouettes, edges, rims and points, and rays along axes, find the
+// hits that testing all objects finds, bit for bit.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "host/accel/tree_words.hpp"
+#include "host/checks/hits.hpp"
+#include "tests/accel/hits_of_one.hpp"
+#include "tests/accel/partition_lists.hpp"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+const std::vector<std::string> kKernelFormats = {"fp32", "e6m15", "e5m10", "e8m12", "e6m15t"};
+
+// A flat polygon of many corners, every second one nearer to its middle.
+void add_star(Scene& scene, SplitMix& random) {
+    const Vec3 middle = random_direction(random), normal = random_direction(random);
+    const Vec3 u = perpendicular(random, normal), v = normal.cross(u);
+    Polygon star;
+    const std::uint32_t corners = 5 + below(random, 60);
+    for (std::uint32_t i = 0; i < corners; ++i) {
+        const double turn = 2 * std::numbers::pi * i / corners, reach = i % 2 ? 0.4 : 1;
+        star.vertices.push_back(middle + reach * (std::cos(turn) * u + std::sin(turn) * v));
+    }
+    scene.polygons.push_back(star);
+}
+
+// Objects of all kinds in one crowd, so that boxes overlap.
+Scene crowd(SplitMix& random, int of_each) {
+    Scene scene = empty_scene();
+    for (int i = 0; i < of_each; ++i) {
+        for (const ObjectKind& kind : object_kinds())
+            if (kind.name != "plane") kind.add(scene, random);
+        add_star(scene, random);
+    }
+    return scene;
+}
+
+// Every fourth ray along an axis, from where it was, and with a limit that is near what it hits.
+Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int turns) {
+    Rays rays;
+    for (const reference::Ray& aimed : aim_at_all(random, scene, bounds, turns).rays) {
+        std::array<float, 3> origin{}, direction{};
+        const bool along_axis = below(random, 4) == 0;
+        const std::uint32_t axis = below(random, 3);
+        for (std::uint32_t a = 0; a < 3; ++a) {
+            origin[a] = static_cast<float>(aimed.origin[static_cast<int>(a)]);
+            const double d = aimed.direction[static_cast<int>(a)];
+            direction[a] = along_axis ? (a == axis ? std::copysign(1.0F, float(d)) : 0.0F) : static_cast<float>(d);
+        }
+        const double limit = below(random, 3) == 0 ? bounds.reach * random.uniform(0, 2) : kUsualLimit;
+        rays.add(origin, direction, static_cast<float>(round_to_format(limit, bounds.format)));
+    }
+    rays.pad();
+    return rays;
+}
+
+struct Tally {
+    std::size_t wrong = 0, hits = 0, rays = 0;
+};
+
+Tally compare(const Variant& variant, unsigned cases) {
+    KernelRunner runner("tests/accel/descent_probe.cl", variant);
+    Tally tally;
+    for (unsigned seed = 1; seed <= cases; ++seed) {
+        SplitMix random(seed);
+        const double scale = random_scale(random, variant.format);
+        const Scene scene = of_all_sizes(crowd(random, 12), random, scale);
+        PackedJob job = job_in(scene, variant.format);
+        append_tree(job, variant.format);
+        const RayBounds bounds{variant.format, 2.0 * job.header().extent};
+        const Rays rays = rays_at(random, scene, bounds, 1);
+        const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
+        const Hits tree = find_hits(runner, "hits_by_tree", job.words(), rays);
+        const Hits stops = find_hits(runner, "stops_by_tree", job.words(), rays);
+        for (std::size_t i = 0; i < rays.count(); ++i) {
+            const bool hit = all.objects[i] != kNothing;
+            tally.hits += hit;
+            tally.wrong += tree.objects[i] != all.objects[i] || tree.distances[i] != all.distances[i] ||
+                           (stops.objects[i] != kNothing) != hit;
+        }
+        tally.rays += rays.count();
+    }
+    return tally;
+}
+
+std::vector<std::string> tree_options(bool filter) {
+    std::vector<std::string> options = {"-DRAYA_ACCEL=2"};
+    if (filter) options.emplace_back("-DRAYA_FILTER=1");
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("aimed rays hit down a tree what they hit of all objects, in every format", "[descent]") {
+    for (const std::string& name : quick_of(2, kKernelFormats))
+        for (const std::uint32_t lanes : quick(1, {16u, 1u, 4u, 8u})) {
+            const NumberFormat format = parse_format(name);
+            CAPTURE(name, lanes);
+            const Tally tally = compare({lanes, true, format, {}, tree_options(!format.is_fp32())}, quick_cases(4, 40));
+            CHECK(tally.wrong == 0);
+            CHECK(5 * tally.hits > tally.rays);
+        }
+}
+
+TEST_CASE("boxes without room for rounding, outlines without an edge and filters without a bound are seen",
+          "[descent]") {
+    struct Fault {
+        const char* format;
+        SourcePatch patch;
+    };
+    const std::vector<Fault> faults = {
+        {"spa22", {"geometry/outline_filter.clh", "5.0f * RAYA_ERROR", "0.1f * RAYA_ERROR"}},
+        {"fp32",
+         {"bvh/leaves.clh", "edge < edges; edge += RAYA_LANES)\n        crossed",
+          "edge + 1 < edges; ++edge)\n        crossed"}},
+        {"spa22", {"geometry/outline_filter.clh", "(fabs(rising - falling) > off)", "(fabs(rising - falling) > 0.0f)"}},
+        {"fp32", {"bvh/boxes.clh", "near <= far;", "near < far * (1.0f - 0x1p-12f);"}}};
+    for (const auto& [name, patch] : quick_of(2, faults)) {
+        const NumberFormat format = parse_format(name);
+        CAPTURE(name, patch.file, patch.replace);
+        CHECK(compare({16, true, format, {patch}, tree_options(!format.is_fp32())}, 4).wrong > 0);
+    }
+}
+
+}  // namespace raya
