@@ -8,6 +8,7 @@
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -108,11 +109,11 @@ TEST_CASE("every command that takes long says so on a terminal within two second
         return words;
     };
     for (const auto& [words, told] :
-         {std::pair<Words, std::string>{with(render, {"--pes", "4"}), "preparing ... 1 s"},
-          {with(render, {"--machine", "torus"}), "preparing ... 1 s"},
-          {{"bench", "--size", "8", "--pes", "8", "--lanes", "4", "--format", "fp32", "--samples", "1"},
-           "preparing ... 1 s"},
-          {{"study", "fig7", "--size", "17", "-o", folder / "s"}, "preparing ... 1 s"}}) {
+         quick(2, {std::pair<Words, std::string>{with(render, {"--pes", "4"}), "preparing ... 1 s"},
+                   {{"study", "fig7", "--size", "17", "-o", folder / "s"}, "preparing ... 1 s"},
+                   {with(render, {"--machine", "torus"}), "preparing ... 1 s"},
+                   {{"bench", "--size", "8", "--pes", "8", "--lanes", "4", "--format", "fp32", "--samples", "1"},
+                    "preparing ... 1 s"}})) {
         const auto start = std::chrono::steady_clock::now();
         const std::string text = told_on_terminal(words, slow);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
