@@ -16,8 +16,8 @@ enum {
     RAYA_SHADED,         // hits of primary, reflected and refracted rays: a normal, a surface, an ambient term
     RAYA_LIT,            // contributions of a light: diffuse term and, where Ks > 0, a highlight
     RAYA_HIGHLIGHTS,     // powers for a highlight
-    RAYA_WALKS,          // rays that met the box of the voxels
-    RAYA_STEPS,          // voxels that rays entered, the first one among them
+    RAYA_WALKS,          // rays that met the box of the voxels, or went down the tree of boxes
+    RAYA_STEPS,          // voxels that rays entered, the first one among them; nodes of the tree
     RAYA_EVENTS          // how many kinds there are
 };
 
