@@ -322,15 +322,16 @@ TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel]") {
         {{"bvh/leaves.clh", "return popcount(crossed) & 1u;", "return crossed & 1u;"}},
         {{"bvh/boxes.clh", "const mask enters = near <= far;", "const mask enters = near + 0.01f <= far;"}},
         {{"bvh/boxes.clh", "popcount(entered) - 1", "popcount(entered) - 2 + (popcount(entered) == 1)"}},
-        {{"bvh/descent.clh", "(p->entries[lane][top] > p->distance.lane[lane])",
-          "(p->entries[lane][top] * 1.01f > p->distance.lane[lane])"}},
-        {{"bvh/descent.clh", "shadow && p->object.lane[lane]", "p->object.lane[lane]"}},
+        {{"bvh/descent.clh", "!(p->entries[lane][at] > p->distance.lane[lane])",
+          "!(p->entries[lane][at] * 1.01f > p->distance.lane[lane])"}},
+        {{"bvh/descent.clh", "!shadow || p->object.lane[lane]", "p->object.lane[lane]"}},
         {{"bvh/leaves.clh", "number < h->object;", "number > h->object;"}},
-        {{"bvh/leaves.clh", "if (!triangles) box =", "if (triangles) box ="}},
+        {{"bvh/leaves.clh", "crosses_edge(seen[2], seen[3]) ^ crosses_edge(seen[3], seen[0])",
+          "crosses_edge(seen[2], seen[0])"}},
         {{"bvh/leaves.clh", "choose(in & mask_not(out & (x.t_out <= x.t_in))", "choose(in & mask_not(out)"}},
         {{"bvh/meet_objects.clh", "raya_link_number(p->link[lane]);", "raya_link_number(p->link[lane]) & ~1u;"},
          "spa22"},
-        {{"bvh/ray_pool.clh", "m & mask_not(done);", "m & mask_not(done) & (r.direction.x > 0.0f);"}}};
+        {{"bvh/ray_pool.clh", "m & mask_not(done);", "m & mask_not(done) & (r->direction.x > 0.0f);"}}};
     for (const Fault& fault : quick_of(2, faults)) {
         settings.kernels.sources.patches = {fault.patch};
         check_patches(settings.kernels.sources);
