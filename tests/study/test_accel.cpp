@@ -9,7 +9,6 @@
 #include "kernels/shared/bvh.h"
 #include "tests/files/scratch_folder.hpp"
 #include "tests/study/study_cases.hpp"
-#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -181,14 +180,14 @@ TEST_CASE("accel's ratio to Embree is of the same rays alone", "[study]") {
 TEST_CASE("each way counts the same rays and fewer tests than all objects", "[study]") {
     Session session(choose_device(""));
     AccelBench bench(session, kSmall, {});
-    if (thorough()) bench.measure({"balls", "balls 1", 0, [] { return generate_balls(1); }});
+    bench.measure({"balls", "balls 1", 0, [] { return generate_balls(1); }});
     bench.measure({"balls", "balls 2", 0, [] { return generate_balls(2); }});
     for (const std::uint64_t seed : {1u, 2u})
         bench.measure({"random", "random 40", seed, [=] { return generate_random(40, seed); }});
     const AccelRuns& all = bench.runs();
     const StudyPage page = accel_page(kSmall, all);
     check_page(page);
-    REQUIRE(all.runs.size() == (thorough() ? 12 : 9));
+    REQUIRE(all.runs.size() == 12);
     CHECK(all.left_out.empty());
     CHECK_FALSE(all.has_peer);
     for (std::size_t i = 0; i < all.runs.size(); i += 3) {
