@@ -4,8 +4,8 @@
 
 #include <bit>
 
-#include "host/embedded.hpp"
 #include "host/accel/grid.hpp"
+#include "host/embedded.hpp"
 #include "host/kernels/kernels.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/split_mix.hpp"
@@ -120,7 +120,7 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
     }
     rays.pad();
     Verdict verdict;
-    for (const char* kernel : {"hits_of_all", "hits_by_grid"}) {
+    for (const char* kernel : {"hits_of_all", "hits_by_search"}) {
         const Hits got = find_hits(runner, kernel, job.words(), rays);
         const auto what = [&](std::size_t i) {
             return fmt::format("{}: {} ({})", known.name, known.hits[i].what, kernel);
@@ -140,7 +140,7 @@ Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, st
         const PackedJob job = job_with_grid(scene, runner.format());
         const Rays rays = random_rays(runner.format(), scene_extent(scene), rays_each);
         const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
-        const Hits walked = find_hits(runner, "hits_by_grid", job.words(), rays);
+        const Hits walked = find_hits(runner, "hits_by_search", job.words(), rays);
         const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
         const Verdict verdict = compare_hits(all, walked, rays, rays_each, what, "");
         if (verdict.outcome != Outcome::kPass) return verdict;

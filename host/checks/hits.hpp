@@ -36,7 +36,7 @@ struct Hits {
     std::string text(std::size_t ray) const;
 };
 
-/// By `kernel`, hits_of_all or hits_by_grid, of a job's words. The number of rays is a multiple of kMostLanes.
+/// By `kernel`, hits_of_all or hits_by_search, of a job's words. The number of rays is a multiple of kMostLanes.
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job, const Rays& rays);
 
 /// How the kernels are built: for jobs with a grid.

@@ -19,11 +19,13 @@ void for_each_pixel(const raya_mapping& m, PixelRange range, std::uint32_t windo
     for (std::uint32_t first = 0; first < m.pes; first += kTogether) {
         const std::uint32_t pes = std::min(kTogether, m.pes - first);
         std::array<raya_share, kTogether> shares{};
+        std::array<raya_pixel_run, kTogether> runs{};
         for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, first + i);
         for (std::uint32_t k = range.begin; k < range.end; ++k)
             for (std::uint32_t i = 0; i < pes; ++i) {
                 if (k >= raya_share_size(shares[i])) continue;
-                const raya_pixel at = raya_pixel_of(m, shares[i], k);
+                runs[i] = raya_pixel_run_at(runs[i], m, shares[i], k);
+                const raya_pixel at = runs[i].pixel;
                 move(std::size_t{first + i} * window + (k - range.block), std::size_t{at.row} * m.width + at.column);
             }
     }

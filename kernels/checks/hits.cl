@@ -1,5 +1,5 @@
-// The nearest hits of given rays, by testing all objects and, where RAYA_ACCEL is 1 and the job has a grid, by the walk
-// through it. The job's words lie in global memory.
+// The nearest hits of given rays, by testing all objects and, where the job has what RAYA_ACCEL says, by the ring's search
+// for them. The job's words lie in global memory.
 #include "kernels/checks/rays.clh"
 #include "kernels/shading/search.clh"
 
@@ -15,22 +15,27 @@ void hits_of_all(__global const uint* restrict job,
     store_bits(distances + first, 1, h.distance);
 }
 
-#if RAYA_ACCEL == RAYA_ACCEL_GRID
-__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void hits_by_grid(__global const uint* restrict job,
-                  __global const float* restrict rays,
-                  __global uint* restrict objects,    // as above
-                  __global uint* restrict distances)
-{
-    const uint first = first_ray();
-    const ray r = load_ray(rays, first);
+#if RAYA_ACCEL != RAYA_ACCEL_NONE
+// `shadow`: any hit will do.
+static inline hit searched_hit(words job, const ray* r, int shadow) {
     tree t;
     ray_pool pool;
     clear_tree(&t);
     open_pool(&pool);
-    put_rays(job, &pool, 0, &t, r.limit > 0.0f, &r, 0);
-    find_hits(job, &pool, 0);
-    const hit h = take_hit(&pool, 0, &t);
+    put_rays(job, &pool, 0, &t, r->limit > 0.0f, r, shadow);
+    find_hits(job, &pool, shadow);
+    return take_hit(&pool, 0, &t);
+}
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void hits_by_search(__global const uint* restrict job,
+                    __global const float* restrict rays,
+                    __global uint* restrict objects,    // as above
+                    __global uint* restrict distances)
+{
+    const uint first = first_ray();
+    const ray r = load_ray(rays, first);
+    const hit h = searched_hit(job, &r, 0);
     store_index(objects + first, 1, h.object);
     store_bits(distances + first, 1, h.distance);
 }

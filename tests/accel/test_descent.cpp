@@ -74,8 +74,8 @@ Tally compare(const Variant& variant, unsigned cases) {
         const RayBounds bounds{variant.format, 2.0 * job.header().extent};
         const Rays rays = rays_at(random, scene, bounds, 1);
         const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
-        const Hits tree = find_hits(runner, "hits_by_tree", job.words(), rays);
-        const Hits stops = find_hits(runner, "stops_by_tree", job.words(), rays);
+        const Hits tree = find_hits(runner, "hits_by_search", job.words(), rays);
+        const Hits stops = find_hits(runner, "stops_by_search", job.words(), rays);
         for (std::size_t i = 0; i < rays.count(); ++i) {
             const bool hit = all.objects[i] != kNothing;
             tally.hits += hit;

@@ -90,7 +90,7 @@ TEST_CASE("a wrong rule for equal distances is seen where spheres coincide", "[v
 TEST_CASE("a walk that ends too soon is seen by hits that lie farther away", "[verify][faults]") {
     const auto checks = run({kWalkFault}, ", fp32");
     CHECK(failures(checks).size() == 5);
-    CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_grid"));
+    CHECK_THAT(first_fault(checks).where, Catch::Contains("hits_by_search"));
 }
 
 TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify][faults]") {
@@ -123,7 +123,7 @@ TEST_CASE("a kernel that does nothing finds no right answers", "[verify][faults]
         std::size_t wrong;
     };
     const Row rows[] = {
-        {"checks/hits.cl", "hits_of_all", ", fp32", 5},         {"checks/hits.cl", "hits_by_grid", ", fp32", 5},
+        {"checks/hits.cl", "hits_of_all", ", fp32", 5},         {"checks/hits.cl", "hits_by_search", ", fp32", 5},
         {"checks/machine.cl", "find_owners", "mapping", 7},     {"checks/machine.cl", "find_ways", "ways", 1},
         {"checks/machine.cl", "turn_round", "local memory", 2}, {"checks/numbers.cl", "operations", "number fp32", 1}};
     for (const Row& row : rows) {
