@@ -82,7 +82,7 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
     const int quarter = 1 << (format.exponent_bits - 2);
     unit_ = std::ldexp(format.truncates ? 1.0 : 0.5, -format.fraction_bits) + 0x1p-24;
     smallest_ = smallest_number(format);
-    stretch_ = std::ldexp(16.0, -format.fraction_bits) + 0x1p-21;  // RAYA_STRETCH, and its own rounding
+    stretch_ = std::ldexp(format.is_fp32() ? 32.0 : 16.0, -format.fraction_bits) + 0x1p-21;  // RAYA_STRETCH, and its own rounding
     far_ = farthest_hit(format);
     square_room_ = std::ldexp(1.0, quarter - 1);
     extent_ = job.header().extent;

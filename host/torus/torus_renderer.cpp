@@ -27,14 +27,14 @@ PackedJob packed(const Session& session, const Scene& scene, const TorusSettings
     return pack_job(scene, job_settings(settings, scale));
 }
 
-// Of what is to be done, by the less hopeful of two measures: packets that are finished beside those that live, which
-// tells the time while all nodes compute; and how far the packets have dwindled, which tells it in the end, when few of
-// them take as many supersteps. Of both the pixels that nodes have looked at.
+// Of what is to be done, by the mean of two measures: packets that are finished beside those that live, which tells the
+// time while all nodes compute, and says too much in the end, when few packets take as many supersteps; and how far the
+// packets have dwindled, which tells that end and says too little before. Of both the pixels that nodes have looked at.
 double share_done(const Census& census, std::size_t returns, std::uint64_t most_live) {
     const auto finished = static_cast<double>(returns), live = static_cast<double>(census.live);
     if (live == 0) return census.looked;
     const double dwindled = 1 - std::log1p(live) / std::log1p(static_cast<double>(most_live));
-    return census.looked * std::min(finished / (finished + live), dwindled);
+    return census.looked * (finished / (finished + live) + dwindled) / 2;
 }
 
 }  // namespace

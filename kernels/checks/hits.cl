@@ -10,7 +10,7 @@ void hits_of_all(__global const uint* restrict job,
                  __global uint* restrict distances)  // [ray]: bits; the limit where nothing is hit
 {
     const uint first = first_ray();
-    const hit h = closest_hit(job, &((job_words)job)->objects, load_ray(rays, first));
+    const hit h = closest_hit(job, &((job_words)job)->objects, load_ray(rays, first), 0);
     store_index(objects + first, 1, h.object);
     store_bits(distances + first, 1, h.distance);
 }

@@ -88,7 +88,7 @@ static inline void treat(const node* n, flight* f, mask m, uint place) {
     const objects_words all = outside ? &((job_words)n->memory)->objects : &voxel->objects;
     const ray r = {vec_of_lanes(f->origin), vec_of_lanes(f->direction),
                    choose(m, choose(is_shadow(f), f->limit.all, num_const(RAYA_FAR)), num_all(0.0f))};
-    const hit h = closest_hit(n->memory, all, r);
+    const hit h = closest_hit(n->memory, all, r, 0);
     count_tests(f, m, all);
     count_shared(f->shared, RAYA_COUNT_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));

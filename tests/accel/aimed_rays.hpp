@@ -126,7 +126,7 @@ inline Vec3 random_start(SplitMix& random, const RayBounds& bounds, const Aim& a
 /// Towards the aim but for a few units in the last place, as long or short as RAYA_STRETCH lets it be, or of length 1.
 inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds, Aim aim) {
     if (below(random, 2) == 0) aim.point = bounds.rounded(aim.point);
-    const double stretch = bounds.format.is_fp32() ? 0x1p-19 : 16 * bounds.unit();  // 2 RAYA_MARGIN
+    const double stretch = bounds.format.is_fp32() ? 0x1p-18 : 16 * bounds.unit();  // RAYA_STRETCH
     for (;;) {
         const Vec3 start = bounds.rounded(random_start(random, bounds, aim));
         const Vec3 arm = aim.point - start;

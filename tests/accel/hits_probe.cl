@@ -18,8 +18,9 @@ void hits_of_one(__global const uint* restrict job,
     if (object < all->spheres)
         h = hit_spheres(h, r, job + all->spheres_at + object * RAYA_SPHERE_WORDS, 1, object);
     else if (object >= first_cone)
-        h = hit_cones(h, r, job + all->cones_at + (object - first_cone) * RAYA_CONE_WORDS, 1, object);
+        h = hit_cones(h, r, job + all->cones_at + (object - first_cone) * RAYA_CONE_WORDS, 1, object, 0);
     else
-        h = hit_polygons(h, r, job, job + all->polygons_at + (object - first_polygon) * RAYA_POLYGON_WORDS, 1, object);
+        h = hit_polygons(h, r, job, job + all->polygons_at + (object - first_polygon) * RAYA_POLYGON_WORDS, 1, object,
+                         0);
     store_lanes(distances + first, 1, h.distance);
 }

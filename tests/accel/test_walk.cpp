@@ -214,8 +214,8 @@ TEST_CASE("walks of all widths of lanes are the same to the bit") {
 // A ray from beyond the reach, or of a direction that is too long or too short, and nothing else.
 TEST_CASE("rays whose hits may lie elsewhere are wide") {
     KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
-    constexpr float kBeyond = 0x1.000002p3F, kLong = 1 + 0x1.8p-21F, kTooLong = 1 + 0x1.4p-20F,
-                    kTooShort = 1 - 0x1.4p-20F;
+    constexpr float kBeyond = 0x1.000002p3F, kLong = 1 + 0x1.8p-20F, kTooLong = 1 + 0x1.4p-19F,
+                    kTooShort = 1 - 0x1.4p-19F;
     raya_grid grid{{-1, -1, -1}, {2, 2, 2}, {1, 1, 1}, 8};
     const std::vector<std::array<float, 6>> near = {
         {0, 0, 0, 1, 0, 0}, {8, -8, 8, 0, 0.6F, 0.8F}, {0, 0, 0, 0, 0, kLong}};

@@ -17,7 +17,7 @@ void find_places(__global const uint* restrict job,
     const uint first = first_ray();
     const ray r = load_ray(rays, first);
     const objects_words all = &((job_words)job)->objects;
-    const hit h = closest_hit(job, all, r);
+    const hit h = closest_hit(job, all, r, 0);
     const mask struck = h.object != RAYA_NO_OBJECT;
     const hit_place p = find_place(job, all, struck, h, r.origin, r.direction);
     store_index(leaving + first, 1, choose_index(p.leaving, (index)(1), (index)(0)));
@@ -49,7 +49,7 @@ void shade_once(__global const uint* restrict job,
     t.level = (index)(level);
     for (uint i = 0; i < RAYA_PENDING; ++i) t.pending[i] = t.ray;
     ray_pool pool;
-    pool.found = closest_hit(job, &((job_words)job)->objects, r);
+    pool.found = closest_hit(job, &((job_words)job)->objects, r, 0);
     pool.direction = r.direction;
     shade(job, &t, &pool);
 

@@ -18,7 +18,7 @@ void voxel_hits(__global const uint* restrict memories,  // of all nodes
     const objects_words all = voxel < node->voxels ? &voxels[voxel].objects : &node->job.objects;
     const uint first = first_ray();
     const ray r = load_ray(rays, first);
-    const hit h = closest_hit(scene, all, r);
+    const hit h = closest_hit(scene, all, r, 0);
     store_index(objects + first, 1, h.object);
     store_lanes(distances + first, 1, h.distance);
     const mask struck = h.object != RAYA_NO_OBJECT;
