@@ -260,7 +260,7 @@ bool tree_pays(const Scene& scene, const NumberFormat& format) {
     double corners = 0;
     for (const Polygon& polygon : scene.polygons) corners += static_cast<double>(polygon.vertices.size());
     const auto spheres = static_cast<double>(scene.spheres.size()), cones = static_cast<double>(scene.cones.size());
-    return kFew < (format.is_fp32() ? spheres + 1.5 * corners + 4 * cones : 2 * spheres + 12 * corners + 32 * cones);
+    return kFew < (format.is_fp32() ? spheres + 1.25 * corners + 8 * cones : spheres + 3 * corners + 32 * cones);
 }
 
 AccelSummary append_tree(PackedJob& job, const NumberFormat& format) {

@@ -11,23 +11,37 @@
 namespace raya {
 
 /// Calls `move` for each pixel of a range of every PE's share, with its number in the device's layout [PE][window] and
-/// in the image. Some PEs at a time: where neighbours own neighbouring columns, what is near in the image is moved
-/// together.
+/// in the image. Some PEs at a time, a run of each: where neighbours own neighbouring columns, what is near in the image
+/// is moved together.
 template <class Move>
 void for_each_pixel(const raya_mapping& m, PixelRange range, std::uint32_t window, Move&& move) {
     constexpr std::uint32_t kTogether = 16;
     for (std::uint32_t first = 0; first < m.pes; first += kTogether) {
         const std::uint32_t pes = std::min(kTogether, m.pes - first);
         std::array<raya_share, kTogether> shares{};
-        std::array<raya_pixel_run, kTogether> runs{};
         for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, first + i);
-        for (std::uint32_t k = range.begin; k < range.end; ++k)
+        std::uint32_t pixels = 0;
+        for (std::uint32_t k = range.begin; k < range.end; k += pixels) {
+            std::array<raya_pixel_run, kTogether> runs{};
+            pixels = range.end - k;
+            for (std::uint32_t i = 0; i < pes; ++i) {
+                const std::uint32_t size = raya_share_size(shares[i]);
+                if (k >= size) continue;
+                runs[i] = raya_pixel_run_of(m, shares[i], k);
+                pixels = std::min({pixels, size - k, runs[i].left + 1});
+            }
             for (std::uint32_t i = 0; i < pes; ++i) {
                 if (k >= raya_share_size(shares[i])) continue;
-                runs[i] = raya_pixel_run_at(runs[i], m, shares[i], k);
-                const raya_pixel at = runs[i].pixel;
-                move(std::size_t{first + i} * window + (k - range.block), std::size_t{at.row} * m.width + at.column);
+                const std::size_t from = std::size_t{first + i} * window + (k - range.block);
+                const std::size_t row = std::size_t{runs[i].pixel.row} * m.width;
+                std::uint32_t column = runs[i].pixel.column;
+                for (std::uint32_t j = 0; j < pixels; ++j) {
+                    move(from + j, row + column);
+                    column += runs[i].step;
+                    if (column >= m.width) column -= m.width;
+                }
             }
+        }
     }
 }
 
