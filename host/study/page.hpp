@@ -52,6 +52,7 @@ struct PlotSeries {
     std::string label;
     std::vector<double> x, y;  // of one length
     PlotStyle style = PlotStyle::kLine;
+    std::vector<double> half_widths = {};  // of the 95 % intervals of y, which are drawn as bars; empty: none are known
 };
 
 enum class Axes { kLinear, kLogX, kLogY, kLogBoth };
@@ -64,13 +65,32 @@ struct StudyPlot {
     std::vector<PlotSeries> series = {};
 };
 
-/// One figure that the paper printed, or might have, beside ours. The ratio ours / paper is made when it is written.
+/// Where a figure of a paper stands.
+enum class Source {
+    kPrinted,
+    kDerived  // arithmetic on printed figures
+};
+
+/// One figure that a paper printed, or might have, beside ours. The ratio ours / paper is made when it is written.
 struct Comparison {
     std::string what;
     std::string unit;             // empty for a plain number
     std::optional<double> paper;  // empty where the paper has none
     double ours = 0;
     std::string remark = {};
+    Source source = Source::kPrinted;
+    std::optional<double> half_width = {};  // of our 95 % interval; empty where ours is a single figure
+};
+
+enum class ClaimVerdict { kReproduced, kNotReproduced, kCannotTell };
+
+/// What a paper says, and whether it was seen.
+struct Claim {
+    std::string paper;  // authors and year: one of paper.hpp
+    std::string place;  // "Fig. 8"
+    std::string words;  // what it says, a sentence
+    ClaimVerdict verdict = ClaimVerdict::kCannotTell;
+    std::string why;  // the figures that the verdict rests on, a sentence
 };
 
 struct StudyPage {
@@ -79,10 +99,13 @@ struct StudyPage {
     std::string question;                  // what the reader wants to know, a sentence
     std::vector<std::string> method = {};  // how it was done, a sentence or two each
     Json settings = {};
+    std::string clock = {};  // by what times on the page are told; empty where it has none
     std::vector<Comparison> comparisons = {};
+    std::vector<Claim> claims = {};
     std::vector<std::string> findings = {};  // a sentence each, the chief one first
     std::vector<StudyTable> tables = {};
     std::vector<StudyPlot> plots = {};
+    std::vector<std::string> news = {};  // what no paper has, a sentence each
 
     /// By its name, by what is compared. std::out_of_range where there is none.
     const StudyTable& table(const std::string& name) const;

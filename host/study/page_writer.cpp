@@ -52,7 +52,22 @@ Json comparison_json(const Comparison& c) {
             {"paper", optional_json(c.paper)},
             {"ours", json_number(c.ours)},
             {"ratio", optional_json(ratio_of(c))},
-            {"remark", c.remark}};
+            {"remark", c.remark},
+            {"source", c.source == Source::kPrinted ? "printed" : "derived"},
+            {"half_width", optional_json(c.half_width)}};
+}
+
+const char* verdict_text(ClaimVerdict verdict) {
+    constexpr const char* kTexts[] = {"reproduced", "not reproduced", "cannot be told"};
+    return kTexts[static_cast<int>(verdict)];
+}
+
+Json claim_json(const Claim& c) {
+    return {{"paper", c.paper},
+            {"place", c.place},
+            {"words", c.words},
+            {"verdict", verdict_text(c.verdict)},
+            {"why", c.why}};
 }
 
 Json table_json(const StudyTable& table) {
@@ -67,7 +82,8 @@ Json series_json(const PlotSeries& s) {
     return {{"label", s.label},
             {"style", kStyles[static_cast<int>(s.style)]},
             {"x", json_list(s.x, json_number)},
-            {"y", json_list(s.y, json_number)}};
+            {"y", json_list(s.y, json_number)},
+            {"half_widths", json_list(s.half_widths, json_number)}};
 }
 
 Json plot_json(const StudyPlot& plot) {
@@ -88,9 +104,20 @@ std::string comparison_table(const std::vector<Comparison>& comparisons) {
     Cells cells = {{"", "paper", "ours", "ours / paper", "remark"}};
     for (const Comparison& c : comparisons) {
         const std::optional<double> ratio = ratio_of(c);
-        cells.push_back({c.what, c.paper ? with_unit(shown(*c.paper), c.unit) : "-", with_unit(shown(c.ours), c.unit),
-                         ratio ? fmt::format("{:.3g}", *ratio) : "-", c.remark});
+        const std::string paper = c.paper ? with_unit(shown(*c.paper), c.unit) : "-";
+        const std::string ours =
+            c.half_width ? fmt::format("{} +- {:.2g}", shown(c.ours), *c.half_width) : shown(c.ours);
+        cells.push_back({c.what, c.paper && c.source == Source::kDerived ? paper + " (derived)" : paper,
+                         with_unit(ours, c.unit), ratio ? fmt::format("{:.3g}", *ratio) : "-", c.remark});
     }
+    return markdown_table(cells);
+}
+
+std::string claims_table(const std::vector<Claim>& claims) {
+    if (claims.empty()) return {};
+    Cells cells = {{"paper", "says", "verdict", "why"}};
+    for (const Claim& c : claims)
+        cells.push_back({fmt::format("{}, {}", c.paper, c.place), c.words, verdict_text(c.verdict), c.why});
     return markdown_table(cells);
 }
 
@@ -153,17 +180,23 @@ Json page_json(const StudyPage& page) {
             {"question", page.question},
             {"method", page.method},
             {"settings", page.settings},
+            {"clock", page.clock},
             {"comparisons", json_list(page.comparisons, comparison_json)},
+            {"claims", json_list(page.claims, claim_json)},
             {"findings", page.findings},
             {"tables", json_list(page.tables, table_json)},
-            {"plots", json_list(page.plots, plot_json)}};
+            {"plots", json_list(page.plots, plot_json)},
+            {"news", page.news}};
 }
 
 std::string page_markdown(const StudyPage& page, const PlotOutcome& plots) {
     std::string text = fmt::format("# {}\n\n{}\n", page.title, page.question);
     text += section("How it was done", list(page.method));
+    if (!page.clock.empty()) text += fmt::format("\nTimes: {}\n", page.clock);
     if (!page.comparisons.empty()) text += section("Beside the paper", comparison_table(page.comparisons));
+    text += section("What the papers say", claims_table(page.claims));
     text += section("What is seen", list(page.findings));
+    text += section("What is new", list(page.news));
     for (const StudyTable& table : page.tables) text += table_section(table);
     text += section("Plots", plots_text(page, plots));
     return text + fmt::format("\nEverything on this page, for programs: [{0}.json]({0}.json).\n", page.name);

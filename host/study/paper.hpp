@@ -7,6 +7,10 @@
 
 namespace raya::paper {
 
+// Whom a claim is of, as pages name them.
+inline constexpr const char *kSpa = "Kohata & Ito 1993", *kTp = "Yoshitani & Yamazaki, about 1995",
+                            *kGrid = "Havran & Sixta 1999";
+
 // Kohata & Ito 1993, up to the rotation.
 inline constexpr double kPes = 256, kSize = 256;
 

@@ -19,15 +19,19 @@ inline StudyPage small_page() {
     page.question = "Does it add up?";
     page.method = {"One image.", "Two mappings."};
     page.comparisons = {{"u(0)", "", 1.5, 1.575, "calibrated"},
-                        {"image transfer", "ms", 140, 35, ""},
+                        {"image transfer", "ms", 140, 35, "", Source::kDerived, 5},
                         {"u(8)", "", {}, 0.1 + 0.2, "not printed"},
                         {"lost", "rays", 0, 2, ""}};
+    page.clock = "modelled.";
+    page.claims = {{"A & B 1993", "Fig. 1", "It adds up.", ClaimVerdict::kReproduced, "2 = 1 + 1."},
+                   {"A & B 1993", "Fig. 2", "Always.", ClaimVerdict::kCannotTell, "Tried once."}};
+    page.news = {"It also multiplies."};
     page.findings = {"It does.", "Nearly."};
     page.tables = {{"small", "All offsets", {{"p"}, {"u"}, {"which, if any"}}},
                    {"small-long", "All loads", {{"load", "cycles"}}, {{123456.75}, {-0.0}}, false}};
     page.tables[0].rows = {{0, 1.0 / 3, "a|b \"c\""}, {-7, kInfinite, "d,\ne"}};
     page.plots = {{"small-u", "u over p", "offset p (pixels)", "imbalance u", Axes::kLogY}};
-    page.plots[0].series = {{"ours", {0, 1, 2}, {1.5, 0.5, kInfinite}, PlotStyle::kLine},
+    page.plots[0].series = {{"ours", {0, 1, 2}, {1.5, 0.5, kInfinite}, PlotStyle::kLine, {0.25, 0, 1}},
                             {"steps", {0, 1, 2}, {1, 2, 3}, PlotStyle::kSteps},
                             {"scenes", {1, 1}, {0.25, 4}, PlotStyle::kPoints},
                             {"paper", {0}, {1.58}, PlotStyle::kPaper}};

@@ -24,16 +24,23 @@ const std::string kComparisons =
     "|  | paper | ours | ours / paper | remark |\n"
     "|---|---|---|---|---|\n"
     "| u(0) | 1.5 | 1.575 | 1.05 | calibrated |\n"
-    "| image transfer | 140 ms | 35 ms | 0.25 |  |\n"
+    "| image transfer | 140 ms (derived) | 35 +- 5 ms | 0.25 |  |\n"
     "| u(8) | - | 0.3 | - | not printed |\n"
     "| lost | 0 rays | 2 rays | - |  |\n";
 
 const std::string kPage =
     "# A small study\n\nDoes it add up?\n"
     "\n## How it was done\n\n- One image.\n- Two mappings.\n"
+    "\nTimes: modelled.\n"
     "\n## Beside the paper\n\n" +
     kComparisons +
+    "\n## What the papers say\n\n"
+    "| paper | says | verdict | why |\n"
+    "|---|---|---|---|\n"
+    "| A & B 1993, Fig. 1 | It adds up. | reproduced | 2 = 1 + 1. |\n"
+    "| A & B 1993, Fig. 2 | Always. | cannot be told | Tried once. |\n"
     "\n## What is seen\n\n- It does.\n- Nearly.\n"
+    "\n## What is new\n\n- It also multiplies.\n"
     "\n## All offsets\n\n"
     "| p | u | which, if any |\n"
     "|---|---|---|\n"
@@ -127,7 +134,18 @@ TEST_CASE("JSON has everything, with strings for what is infinite and null for w
                                   {"paper", 1.5},
                                   {"ours", 1.575},
                                   {"ratio", 1.575 / 1.5},
-                                  {"remark", "calibrated"}});
+                                  {"remark", "calibrated"},
+                                  {"source", "printed"},
+                                  {"half_width", nullptr}});
+    CHECK(compared[1]["source"] == "derived");
+    CHECK(compared[1]["half_width"] == 5);
+    CHECK(json["clock"] == "modelled.");
+    CHECK(json["claims"][1] == Document{{"paper", "A & B 1993"},
+                                        {"place", "Fig. 2"},
+                                        {"words", "Always."},
+                                        {"verdict", "cannot be told"},
+                                        {"why", "Tried once."}});
+    CHECK(json["news"] == Document::parse("[\"It also multiplies.\"]"));
     CHECK(compared[2]["paper"].is_null());
     CHECK(compared[2]["ratio"].is_null());
     CHECK(compared[3]["paper"] == 0);
@@ -141,6 +159,8 @@ TEST_CASE("JSON has everything, with strings for what is infinite and null for w
     CHECK(plot["log_y"] == true);
     CHECK(plot["x_label"] == "offset p (pixels)");
     CHECK(plot["series"][0]["y"] == Document::parse("[1.5, 0.5, \"inf\"]"));
+    CHECK(plot["series"][0]["half_widths"] == Document::parse("[0.25, 0, 1]"));
+    CHECK(plot["series"][1]["half_widths"].size() == 0);
     const std::vector<std::string> styles = {"line", "steps", "points", "paper"};
     for (std::size_t i = 0; i < styles.size(); ++i) CHECK(plot["series"][i]["style"] == styles[i]);
 }
