@@ -269,7 +269,7 @@ AccelSummary append_tree(PackedJob& job, const NumberFormat& format) {
     TreeWriter writer(tree, job);
     raya_bvh header{};
     header.reach = static_cast<float>(all.reach);
-    header.root = tree.items.empty() ? RAYA_NO_LINK : writer.put(tree.root);
+    header.root = tree.items.empty() ? RAYA_NO_TREE : writer.put(tree.root);
     const std::size_t at = job.words().size(), end = at + kWordsOf<raya_bvh> + all.apart.size();
     const std::size_t rows_at = (end + kWidth - 1) / kWidth * kWidth;
     if (writer.words().size() / kWidth > RAYA_LINK_ROW)

@@ -8,12 +8,10 @@
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
+#include "host/scene/rounded.hpp"
 
 namespace raya {
 namespace {
-
-/// To nine decimals: sine and cosine differ between platforms in the last bits.
-double rounded(double x) { return std::round(x * 1e9) / 1e9 + 0.0; }
 
 /// A multiple of four: wheels that mesh on one side then do so on all four.
 constexpr int kTeeth = 24;

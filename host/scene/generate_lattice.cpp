@@ -5,14 +5,10 @@
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
+#include "host/scene/rounded.hpp"
 
 namespace raya {
 namespace {
-
-/// To nine decimals: short in files, and three more than SPD's own files have.
-double rounded(double x) { return std::round(x * 1e9) / 1e9 + 0.0; }
-
-Vec3 rounded(const Vec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
 
 // Shares of the distance between neighbouring spheres. A cylinder starts inside its sphere, half-way to its surface but
 // for a hundredth, and ends so far inside the next one.

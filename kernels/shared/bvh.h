@@ -92,7 +92,7 @@ enum {
     RAYA_LINK_CONES,
     RAYA_LINK_OBJECT
 };
-#define RAYA_NO_LINK 0xffffffffu  // of a tree without objects
+#define RAYA_NO_TREE 0xffffffffu  // of a tree without objects
 
 RAYA_SHARED_FUNCTION raya_u32 raya_link(raya_u32 kind, raya_u32 objects, raya_u32 row) {
     return kind << RAYA_LINK_KIND_SHIFT | (objects - 1) << RAYA_LINK_OBJECTS_SHIFT | row;
