@@ -47,14 +47,43 @@ std::optional<std::size_t> as_index(const std::string& text) {
     return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-std::size_t default_index(const std::vector<DeviceInfo>& devices) {
+/// Those of one type that can be used, in order.
+std::vector<std::size_t> usable_of(const std::string& type, const std::vector<DeviceInfo>& devices) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < devices.size(); ++i)
+        if (devices[i].type == type && is_usable(devices[i])) found.push_back(i);
+    return found;
+}
+
+std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t turn) {
     for (const char* type : {"gpu", "cpu", "other"}) {
-        const auto found = std::find_if(devices.begin(), devices.end(), [type](const DeviceInfo& device) {
-            return device.type == type && is_usable(device);
-        });
-        if (found != devices.end()) return std::size_t(found - devices.begin());
+        const std::vector<std::size_t> found = usable_of(type, devices);
+        if (!found.empty()) return found[turn % found.size()];
     }
     throw DeviceError("no OpenCL device is available with a compiler; see clinfo; there are:" + list_of(devices));
+}
+
+/// Entry `turn` of a list with commas, which starts anew at its end.
+std::string entry_of(const std::string& list, std::size_t turn) {
+    const auto entries = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
+    std::size_t begin = 0;
+    for (std::size_t i = turn % entries; i > 0; --i) begin = list.find(',', begin) + 1;
+    return list.substr(begin, list.find(',', begin) - begin);
+}
+
+/// The device of that number, the first usable one of that type, or the first with that text in platform, name,
+/// version or driver; the end where there is none.
+std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
+    const std::optional<std::size_t> number = as_index(wanted);
+    if (number && *number < devices.size()) return *number;
+    const std::string part = lower_case(wanted);
+    const std::vector<std::size_t> of_type = usable_of(part, devices);
+    if (!of_type.empty()) return of_type.front();
+    const auto found = std::find_if(devices.begin(), devices.end(), [&part](const DeviceInfo& device) {
+        const std::string all = fmt::format("{} {} {} {}", device.platform, device.name, device.version, device.driver);
+        return lower_case(all).find(part) != std::string::npos;
+    });
+    return static_cast<std::size_t>(found - devices.begin());
 }
 
 std::vector<cl::Platform> all_platforms() {
@@ -121,7 +150,7 @@ DeviceInfo device_info(const cl::Device& device) {
     });
 }
 
-std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
+std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t turn) {
     if (devices.empty()) {
         throw DeviceError(
             "no OpenCL device found; remedy: install a driver (Debian: apt install pocl-opencl-icd), look at the "
@@ -129,23 +158,20 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
             "it may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME), and under a limit of memory "
             "(ulimit -v)");
     }
-    if (wanted.empty()) return default_index(devices);
-    const std::optional<std::size_t> number = as_index(wanted);
-    const auto found =
-        number && *number < devices.size()
-            ? devices.begin() + std::ptrdiff_t(*number)
-            : std::find_if(devices.begin(), devices.end(), [part = lower_case(wanted)](const DeviceInfo& device) {
-                  return lower_case(full_name(device)).find(part) != std::string::npos;
-              });
-    if (found == devices.end()) {
-        throw DeviceError(fmt::format("no OpenCL device matches '{}'; remedy: a number or a part of a name from:{}",
-                                      wanted, list_of(devices)));
+    const std::string one = entry_of(wanted, turn);
+    if (one.empty()) return default_index(devices, turn);
+    const std::size_t found = named_index(one, devices);
+    if (found == devices.size()) {
+        throw DeviceError(fmt::format(
+            "no OpenCL device matches '{}'; remedy: a number, a type or a part of a name or version from:{}", one,
+            list_of(devices)));
     }
-    if (!is_usable(*found)) {
-        throw DeviceError(fmt::format("OpenCL device {} is {}; remedy: choose another from:{}", full_name(*found),
-                                      found->available ? "without a compiler" : "not available", list_of(devices)));
+    if (!is_usable(devices[found])) {
+        throw DeviceError(
+            fmt::format("OpenCL device {} is {}; remedy: choose another from:{}", full_name(devices[found]),
+                        devices[found].available ? "without a compiler" : "not available", list_of(devices)));
     }
-    return std::size_t(found - devices.begin());
+    return found;
 }
 
 cl::Device choose_device(const std::string& name_part) {

@@ -17,11 +17,14 @@ std::vector<cl::Device> all_devices();
 DeviceInfo device_info(const cl::Device& device);
 
 /// The index into `devices` of the one that `wanted` names:
-/// - empty: the first GPU, else the first CPU, else any; only devices that are available and have a compiler;
+/// - empty: of the GPUs, else of the CPUs, else of any, number `turn`; only devices that are available and have a
+///   compiler; after the last one the first again;
 /// - "0", "1", ...: the position in `devices`, as `raya devices` prints it, where there are that many;
-/// - else the first device with `wanted`, upper and lower case alike, in "platform device name".
+/// - "gpu", "cpu", "other": the first usable one of the type;
+/// - else the first device with `wanted`, upper and lower case alike, in its platform, name, version or driver;
+/// - a list of those with commas: number `turn` of it, after the last one the first again.
 /// DeviceError: there is none (names the remedy), none matches (lists what there is), or the one named is unusable.
-std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices);
+std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t turn = 0);
 
 /// The device that `name_part` names, see device_index; where it is empty, the one that the environment variable
 /// RAYA_DEVICE names, if set. Looks at all platforms. DeviceError as in device_index and all_devices.

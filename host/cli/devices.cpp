@@ -33,8 +33,9 @@ void list_devices() {
     fmt::print("{}\n", text_table(rows));
     for (const std::string& version : versions) fmt::print("{}\n", version);
     fmt::print(
-        "\nlanes, group: what raya chooses unless given. --device takes a number or a part of a name; so does "
-        "RAYA_DEVICE.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and stands in the report, e.g. "
+        "\nlanes, group: what raya chooses unless given. --device takes a number, a type or a part of a name or "
+        "version; so does RAYA_DEVICE.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and stands in the "
+        "report, e.g. "
         "-cl-opt-disable where a compiler is in doubt.\n");
 }
 

@@ -83,6 +83,25 @@ TEST_CASE("a device is chosen by name over all platforms", "[cl]") {
     CHECK(device_index("380", kDevices) == 3);  // no such number, so a part of a name
 }
 
+TEST_CASE("a device is chosen by type, version and driver, and one after another of a list", "[cl]") {
+    std::vector<DeviceInfo> devices = kDevices;
+    devices[1].version = "OpenCL 3.0 PoCL HSTR: skylake-avx512";
+    devices[3].driver = "23.17";
+    CHECK(device_index("CPU", devices) == 1);
+    CHECK(device_index("gpu", devices) == 2);  // the first that can be used
+    CHECK(device_index("avx512", devices) == 1);
+    CHECK(device_index("23.17", devices) == 3);
+    const std::vector<std::size_t> expected = {1, 3, 2, 1, 3};
+    for (std::size_t turn = 0; turn < expected.size(); ++turn)
+        CHECK(device_index("cpu,Arc 380,2", devices, turn) == expected[turn]);
+    for (std::size_t turn = 0; turn < 5; ++turn) {
+        CHECK(device_index("cpu", devices, turn) == 1);
+        CHECK(device_index("", devices, turn) == 2 + turn % 2);  // the GPUs in turn
+    }
+    CHECK_THROWS_WITH(device_index("cpu,radeon", devices, 1), Contains("'radeon'") && !Contains("'cpu"));
+    CHECK_THROWS_AS(device_index("other", devices), DeviceError);
+}
+
 TEST_CASE("a device that does not exist is refused with the list of those that do", "[cl]") {
     const std::string text = refusal("Radeon", kDevices);
     CHECK_THAT(text, Contains("'Radeon'") && Contains("remedy"));

@@ -101,7 +101,7 @@ TEST_CASE("devices lists each device with the lanes that raya chooses", "[cli]")
     for (const char* column : {"device", "platform", "lanes", "local KB", "div/sqrt exact", "profiling"})
         CHECK_THAT(out, Catch::Contains(column));
     CHECK(lines_that_start_with(out, "0").size() == 1);
-    CHECK_THAT(out, Catch::Contains("0: OpenCL") && Catch::Contains("--device takes a number or a part of a name"));
+    CHECK_THAT(out, Catch::Contains("0: OpenCL") && Catch::Contains("--device takes a number, a type or a part of a name"));
 }
 
 TEST_CASE("a render ends with a short summary", "[cli]") {

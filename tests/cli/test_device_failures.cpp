@@ -56,7 +56,7 @@ TEST_CASE("RAYA_BUILD_OPTIONS goes to every build, into the report and into the 
 TEST_CASE("an unknown device ends with the list of those that there are", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    const Words message = {"no OpenCL device matches 'nosuch'", "remedy: a number or a part of a name", "\n  0: "};
+    const Words message = {"no OpenCL device matches 'nosuch'", "remedy: a number, a type or a part of a name", "\n  0: "};
     check_refused(outputs, render_into(outputs, scene, {"--device", "nosuch"}), 3, message);
     check_refused(outputs, render_into(outputs, scene), 3, message, {.variables = {{"RAYA_DEVICE", "nosuch"}}});
     check_refused(outputs, {"bench", "--device", "nosuch"}, 3, message);
