@@ -4,17 +4,21 @@
     tools/plot.py FILE.json...    NAME.svg and NAME.png of every plot in FILE, beside it
 
 `raya study` holds this script within itself and does the same after each study. The same file gives the same bytes
-under the same matplotlib. All plots of a file appear, each whole, or none does. Exit code 1: a file cannot be drawn,
+under the same matplotlib. An SVG says in words what it shows and holds the figures of its points, for the document of
+all studies (host/study/html_figure.hpp, host/study/document/script.js). All plots of a file appear, each whole, or none does. Exit code 1: a file cannot be drawn,
 with the reason; 3: no matplotlib.
 """
 import sys
 
 sys.path[:] = [folder for folder in sys.path if folder]  # read from stdin: the user's folder may hold a json.py
 
+import io
 import json
 import math
 import os
+import re
 import textwrap
+from xml.sax.saxutils import escape, quoteattr
 
 os.environ.pop("MPLBACKEND", None)  # one that is not installed would stop the import
 
@@ -42,7 +46,7 @@ STYLE = {
     "axes.formatter.useoffset": False, "axes.formatter.limits": (-4, 6), "axes.grid": True, "axes.labelsize": 12,
     "axes.spines.right": False, "axes.spines.top": False, "axes.titlelocation": "left", "axes.titlesize": 13,
     "axes.titleweight": "bold", "axes.titlepad": 12, "font.size": 11, "grid.color": "#dddddd", "grid.linewidth": 0.7,
-    "legend.fontsize": 11, "legend.frameon": False, "svg.hashsalt": "raya",
+    "legend.fontsize": 11, "legend.frameon": False, "svg.fonttype": "none", "svg.hashsalt": "raya",
     "xtick.labelsize": 11, "ytick.labelsize": 11,
 }
 
@@ -90,16 +94,60 @@ def look_of(style, number, count):
     raise PlotError(f"no style '{style}': there are line, points, steps, paper")
 
 
+def half_widths_of(plot, series):
+    """Of the 95 % intervals, 0 where none is known; empty where no point has one."""
+    halves = [0.0 if math.isnan(value) else value
+              for value in numbers({"half_widths": series.get("half_widths", [])}, "half_widths", plot["name"])]
+    if halves and len(halves) != len(series["y"]):
+        raise PlotError(f"plot '{plot['name']}', series '{series['label']}': {len(halves)} half widths")
+    return halves
+
+
+def draw_intervals(axes, plot, points, halves, colour):
+    """As bars; as a band along a line of many points. On a logarithmic axis what reaches down to 0 ends in the plot."""
+    x, y, half = zip(*((x, y, h) for (x, y), h in zip(points, halves) if is_shown(plot, x, y)))
+    above = [value for value, h in zip(y, half) for value in (value, value - h) if value > 0]
+    floor = min(above) / 2 if plot["log_y"] else -math.inf
+    low = [max(value - h, floor) for value, h in zip(y, half)]
+    if len(x) > FEW:
+        axes.fill_between(x, low, [value + h for value, h in zip(y, half)], color=colour, alpha=0.25, linewidth=0)
+    else:
+        axes.errorbar(x, y, yerr=[[value - end for value, end in zip(y, low)], half], fmt="none", ecolor=colour,
+                      elinewidth=1.2, capsize=3)
+
+
 def draw_series(axes, plot):
-    """Returns x and y of every series."""
-    drawn, kinds = [], {True: 0, False: 0}
+    """Returns of every series x and y, and the line that stands for it in the legend."""
+    drawn, lines, kinds = [], [], {True: 0, False: 0}
     for series in plot["series"]:
         x, y = points_of(plot, series)
         paper = series["style"] == "paper"
-        axes.plot(x, y, **look_of(series["style"], kinds[paper], len(x)))
+        look = look_of(series["style"], kinds[paper], len(x))
+        lines += axes.plot(x, y, **look)
         kinds[paper] += 1
+        halves = half_widths_of(plot, series)
+        if any(is_shown(plot, *at) for at in zip(x, y)) and any(halves):
+            draw_intervals(axes, plot, list(zip(x, y)), halves, look["color"])
         drawn.append((x, y))
-    return drawn
+    return drawn, lines
+
+
+def ink_of(axes, plot, drawn):
+    """Places that lines and points cover, in points of an inch on the figure."""
+    places = []
+    for x, y in drawn:
+        at = axes.transData.transform([at for at in zip(x, y) if is_shown(plot, *at)] or [(1, 1)]) * 72 / axes.figure.dpi
+        places += [tuple(a + (b - a) * i / 16) for a, b in zip(at, at[1:]) for i in range(16)] + [tuple(at[-1])]
+    return places
+
+
+def free_side(places, at, text):
+    """Of the four sides of a point that on which a text covers the least, as its offset from there."""
+    def covered(side):
+        left = side[0] if side[0] > 0 else side[0] - 6.5 * len(text)
+        return sum(left <= x - at[0] <= left + 6.5 * len(text) and side[1] - 2 <= y - at[1] <= side[1] + 11
+                   for x, y in places)
+    return min(((11, 5), (-11, 5), (11, -14), (-11, -14)), key=covered)
 
 
 def name_paper_points(axes, plot, drawn):
@@ -107,13 +155,15 @@ def name_paper_points(axes, plot, drawn):
     papers = [points for series, points in zip(plot["series"], drawn) if series["style"] == "paper"]
     if sum(len(x) for x, _ in papers) > 8:
         return
-    share = axes.transData + axes.transAxes.inverted()  # 0..1 from side to side
+    places, share = ink_of(axes, plot, drawn), axes.transData + axes.transAxes.inverted()  # 0..1 from side to side
     for x, y in papers:
         for at in zip(x, y):
             if not is_shown(plot, *at):
                 continue
-            on_right = share.transform(at)[0] > 0.85  # then its text stands on the left
-            axes.annotate(f"{at[1]:.5g}", at, xytext=(-11 if on_right else 11, 5), textcoords="offset points",
+            text = f"{at[1]:.3g}" if at[1] < 1000 else f"{at[1]:.0f}"
+            side = free_side(places, axes.transData.transform(at) * 72 / axes.figure.dpi, text)
+            on_right = side[0] < 0 or share.transform(at)[0] > 0.85  # then its text stands on the left
+            axes.annotate(text, at, xytext=(-11 if on_right else 11, side[1]), textcoords="offset points",
                           ha="right" if on_right else "left", zorder=6, path_effects=HALO)
 
 
@@ -173,12 +223,12 @@ def legend_labels(plot):
     return [textwrap.fill(plain(series["label"]), LEGEND_WIDTH) for series in plot["series"]]
 
 
-def draw_legend(axes, labels):
+def draw_legend(axes, lines, labels):
     """On the right of the data, never over it."""
     if not any(labels):
         return
     labels = [" " + label if label.startswith("_") else label for label in labels]  # matplotlib would leave it out
-    axes.legend(axes.get_lines(), labels, loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0, handlelength=2.6)
+    axes.legend(lines, labels, loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0, handlelength=2.6)
 
 
 def draw(plot):
@@ -187,12 +237,12 @@ def draw(plot):
     figure = Figure(figsize=(9, max(5.2, 0.24 * lines)), layout="constrained")  # inches: 900 pixels wide at 100 an inch
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    drawn = draw_series(axes, plot)
+    drawn, handles = draw_series(axes, plot)
     points = [at for x, y in drawn for at in zip(x, y)]
     shown = [at for at in points if is_shown(plot, *at)]
     set_axes(axes, plot, shown)
     axes.set_title(textwrap.fill(plain(plot["title"]), 76))
-    draw_legend(axes, labels)
+    draw_legend(axes, handles, labels)
     hidden = len(points) - len(shown)
     if hidden:
         figure.text(0.01, 0.01, f"{hidden} point{'s' if hidden > 1 else ''} without a place on these axes "
@@ -204,16 +254,60 @@ def draw(plot):
     return figure
 
 
-def save(figures, folder):
+def point_texts(axes, plot, series, points):
+    """Of each point on the axes: x, y, half width, and where it lies in hundredths of the width and of the height."""
+    to_figure = axes.transData + axes.figure.transFigure.inverted()
+    halves = half_widths_of(plot, series) or [0.0] * len(points)
+    for (x, y), half in zip(points, halves):
+        if is_shown(plot, x, y):
+            left, up = to_figure.transform((x, y))
+            yield f"{x:.6g},{y:.6g},{half:.2g},{100 * left:.2f},{100 - 100 * up:.2f}"
+
+
+def data_of(figure, plot):
+    """What a document's script reads when a reader points at the plot: every point with its place."""
+    axes = figure.axes[0]
+    texts = [f'<g class="data" data-x={quoteattr(plot["x_label"])} data-y={quoteattr(plot["y_label"])}>']
+    for series in plot["series"]:
+        points = zip(*points_of(plot, series))
+        texts.append(f'<g data-label={quoteattr(str(series["label"]))} '
+                     f'data-points="{" ".join(point_texts(axes, plot, series, list(points)))}"/>')
+    return "\n".join(texts) + "\n</g>\n"
+
+
+def described(svg, figure, plot):
+    """The drawing with what it shows in words, and with names that no other drawing on a page has."""
+    name = f"plot-{plot['name']}"
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", svg)
+    svg = svg.replace("*{stroke", f"#{name} *{{stroke")  # a style for all elements is for those of the drawing
+    svg = svg.replace("<svg ", f'<svg id="{name}" role="img" aria-labelledby="{name}-title" aria-describedby="{name}-desc" ', 1)
+    head = svg.index(">", svg.index("<svg ")) + 1
+    words = (f'\n<title id="{name}-title">{escape(plot["title"])}</title>'
+             f'\n<desc id="{name}-desc">{escape(plot.get("description", ""))}</desc>')
+    end = svg.rindex("</svg>")
+    return svg[:head] + words + svg[head:end] + data_of(figure, plot) + svg[end:]
+
+
+def files_of(figure, plot):
+    """(extension, bytes) of its files."""
+    svg, png = io.BytesIO(), io.BytesIO()
+    figure.savefig(svg, format="svg", metadata={"Date": None})
+    figure.savefig(png, format="png", dpi=160, metadata={"Software": None})
+    return ("svg", described(svg.getvalue().decode(), figure, plot).encode()), ("png", png.getvalue())
+
+
+def save(plots, folder):
     """Writes all to temporary names, then renames them."""
     written = []
     try:
-        for name, figure in figures:
-            for kind, metadata in (("svg", {"Date": None}), ("png", {"Software": None})):
-                target = os.path.join(folder, f"{name}.{kind}")
+        for plot in plots:
+            for kind, content in files_of(draw(plot), plot):
+                target = os.path.join(folder, f"{plot['name']}.{kind}")
                 temporary = os.path.join(folder, f".raya-{os.getpid()}-{len(written)}.tmp")
                 written.append((temporary, target))
-                figure.savefig(temporary, format=kind, dpi=160, metadata=metadata)
+                with open(temporary, "wb") as file:
+                    file.write(content)
         for temporary, target in written:
             os.replace(temporary, target)
     finally:
@@ -227,7 +321,7 @@ def main(files):
         try:
             with open(file, encoding="utf-8") as text:
                 plots = json.load(text)["plots"]
-            save([(plot["name"], draw(plot)) for plot in plots], os.path.dirname(file))
+            save(plots, os.path.dirname(file))
         except KeyError as problem:
             sys.exit(f"plot.py: {file}: no {problem} in it")
         except (PlotError, OSError, ValueError, TypeError) as problem:

@@ -1,8 +1,9 @@
-// raya study NAME [SCENE...] -o DIR: the load laboratory; `all` writes every study and an index page that tells the
-// story.
+// raya study NAME [SCENE...] -o DIR: the load laboratory: files of one study, or with `all` of every one, and a
+// document to read.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,6 +16,8 @@
 #include "host/files/progress.hpp"
 #include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/report/text_tables.hpp"
+#include "host/study/document.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/studies.hpp"
 
@@ -66,6 +69,33 @@ void print_page(const StudyPage& page, const PlotOutcome& plots, const fs::path&
     fmt::print("  {}\n", (folder / (page.name + ".md")).string());
 }
 
+// A word of a command line, as a shell takes it.
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+        return std::isalnum(c) || std::string_view("_-./:=+,%@").find(char(c)) != std::string_view::npos;
+    });
+    return plain ? word : '\'' + replaced(word, "'", "'\\''") + '\'';
+}
+
+// What makes the page of one study, wherever it is to be written.
+RunRecord record_of(const Study& study, const LaboratoryCommand& command, const DeviceInfo& device) {
+    std::string line = "raya study " + study.name;
+    for (const std::string& scene : command.scenes) {
+        line += ' ' + quoted(scene);
+        if (study.one_scene) break;
+    }
+    if (command.size) line += fmt::format(" --size {}", *command.size);
+    if (command.strict) line += " --strict";
+    if (!command.device.empty()) line += " --device " + quoted(command.device);
+    return {RAYA_VERSION, line + " -o DIR", device.name, device.platform, device.driver};
+}
+
+std::string stage_of(std::span<const Study> wanted, std::size_t at) {
+    if (wanted.size() == 1) return "study " + wanted[at].name;
+    const std::string next = at + 1 < wanted.size() ? "next " + wanted[at + 1].name : "the last";
+    return fmt::format("study {}, {} of {} done, {}", wanted[at].name, at, wanted.size(), next);
+}
+
 void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted) {
     if (wanted.size() == 1 && wanted.front().one_scene && command.scenes.size() > 1)
         throw UserError(
@@ -76,28 +106,32 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted
     std::vector<std::string> files;
     for (const Study& study : wanted)
         for (const char* end : {".md", ".json"}) files.push_back(study.name + end);
+    files.emplace_back("index.html");
     if (wanted.size() > 1) files.emplace_back("index.md");
     ProgressBar bar(true, "preparing");
     Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
     const StudyFolder made(command.folder, files);
     Laboratory laboratory(session, side);
     std::vector<StudyPage> pages;
-    for (const Study& study : wanted) {
-        bar.stage("study " + study.name);
-        pages.push_back(study.run(laboratory, scenes));
+    std::vector<PlotOutcome> plots;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        bar.stage(stage_of(wanted, i));
+        pages.push_back(wanted[i].run(laboratory, scenes));
+        pages.back().run = record_of(wanted[i], command, session.device());
+        plots.push_back(write_page(command.folder, pages.back()));
         clear_status();
-        print_page(pages.back(), write_page(command.folder, pages.back()), command.folder);
+        print_page(pages.back(), plots.back(), command.folder);
     }
-    if (wanted.size() > 1) {
-        write_index(command.folder, pages);
-        fmt::print("{}\n", (fs::path(command.folder) / "index.md").string());
-    }
+    write_document(command.folder, pages, plots);
+    if (wanted.size() > 1) write_index(command.folder, pages);
+    fmt::print("{}\n", (fs::path(command.folder) / "index.html").string());
 }
 
 void add_study(CLI::App& parent, const std::string& name, const std::string& summary, std::span<const Study> wanted) {
     CLI::App* command = parent.add_subcommand(name, summary);
     const auto options = std::make_shared<LaboratoryCommand>();
-    add_value(*command, "-o,--output", options->folder, "Folder for Markdown, CSV, JSON and plots; made if missing")
+    add_value(*command, "-o,--output", options->folder,
+              "Folder for index.html, to be read; Markdown, CSV, JSON and plots beside it; made if missing")
         ->required()
         ->type_name("DIR");
     add_value(*command, "SCENE", options->scenes,
@@ -117,7 +151,7 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
 
 void add_laboratory_studies(CLI::App& study) {
     for (const Study& one : studies()) add_study(study, one.name, one.summary, {&one, 1});
-    add_study(study, "all", "All studies of the load laboratory, and a page that tells the story in order", studies());
+    add_study(study, "all", "All studies of the load laboratory, and one document of them", studies());
 }
 
 }  // namespace raya

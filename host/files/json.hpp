@@ -74,6 +74,8 @@ class Json {
     double number() const;
     std::uint64_t whole(std::uint64_t most = UINT64_MAX) const;
     const std::vector<Json>& elements() const;
+    /// The names of an object's members, in the order in which they were added; empty for anything else.
+    const std::vector<std::string>& keys() const { return keys_; }
     std::vector<std::string> texts() const;
 
     /// As text, in one line or with so many blanks a level. What is not UTF-8, as a path or a driver's name may be, is

@@ -93,6 +93,13 @@ struct Claim {
     std::string why;  // the figures that the verdict rests on, a sentence
 };
 
+/// What made a page: with it, and with the page's settings, each of its figures can be had again.
+struct RunRecord {
+    std::string version;                   // of raya
+    std::string command;                   // that makes this page and no other
+    std::string device, platform, driver;  // as OpenCL names them
+};
+
 struct StudyPage {
     std::string name;  // stem of its files: "fig8"
     std::string title;
@@ -106,6 +113,8 @@ struct StudyPage {
     std::vector<StudyTable> tables = {};
     std::vector<StudyPlot> plots = {};
     std::vector<std::string> news = {};  // what no paper has, a sentence each
+    std::string beside = {};             // whose figures stand in `comparisons`, as in paper.hpp; empty: nobody's
+    RunRecord run = {};                  // empty until a command has run the study
 
     /// By its name, by what is compared. std::out_of_range where there is none.
     const StudyTable& table(const std::string& name) const;

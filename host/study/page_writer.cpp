@@ -2,40 +2,15 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-#include <set>
-#include <stdexcept>
-
 #include "host/files/whole_file.hpp"
 #include "host/report/text_tables.hpp"
+#include "host/study/conclusion.hpp"
+#include "host/study/page_text.hpp"
+#include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 
 namespace raya {
 namespace {
-
-using Cells = std::vector<std::vector<std::string>>;
-
-std::string exact(const Cell& cell) {
-    return std::visit([](const auto& value) { return fmt::format("{}", value); }, cell);
-}
-
-// Five digits, and never an exponent where all digits fit: a reader compares figures by their lengths.
-std::string shown(double value) {
-    if (value == 0) return "0";  // not -0
-    const double size = std::abs(value);
-    return size >= 1e4 && size < 1e15 ? fmt::format("{:.0f}", value) : fmt::format("{:.5g}", value);
-}
-
-std::string shown(const Cell& cell) {
-    if (const auto* value = std::get_if<double>(&cell)) return shown(*value);
-    return exact(cell);
-}
-
-// Empty where the paper has no number, or none to divide by.
-std::optional<double> ratio_of(const Comparison& c) {
-    if (!c.paper || *c.paper == 0) return {};
-    return c.ours / *c.paper;
-}
 
 Json optional_json(const std::optional<double>& value) { return value ? json_number(*value) : nullptr; }
 
@@ -55,11 +30,6 @@ Json comparison_json(const Comparison& c) {
             {"remark", c.remark},
             {"source", c.source == Source::kPrinted ? "printed" : "derived"},
             {"half_width", optional_json(c.half_width)}};
-}
-
-const char* verdict_text(ClaimVerdict verdict) {
-    constexpr const char* kTexts[] = {"reproduced", "not reproduced", "cannot be told"};
-    return kTexts[static_cast<int>(verdict)];
 }
 
 Json claim_json(const Claim& c) {
@@ -86,9 +56,18 @@ Json series_json(const PlotSeries& s) {
             {"half_widths", json_list(s.half_widths, json_number)}};
 }
 
+Json run_json(const RunRecord& run) {
+    return {{"version", run.version},
+            {"command", run.command},
+            {"device", run.device},
+            {"platform", run.platform},
+            {"driver", run.driver}};
+}
+
 Json plot_json(const StudyPlot& plot) {
     return {{"name", plot.name},
             {"title", plot.title},
+            {"description", description_of(plot)},
             {"x_label", plot.x_label},
             {"y_label", plot.y_label},
             {"log_x", plot.axes == Axes::kLogX || plot.axes == Axes::kLogBoth},
@@ -96,33 +75,17 @@ Json plot_json(const StudyPlot& plot) {
             {"series", json_list(plot.series, series_json)}};
 }
 
-std::string with_unit(const std::string& number, const std::string& unit) {
-    return unit.empty() ? number : number + ' ' + unit;
-}
-
-std::string comparison_table(const std::vector<Comparison>& comparisons) {
-    Cells cells = {{"", "paper", "ours", "ours / paper", "remark"}};
-    for (const Comparison& c : comparisons) {
-        const std::optional<double> ratio = ratio_of(c);
-        const std::string paper = c.paper ? with_unit(shown(*c.paper), c.unit) : "-";
-        const std::string ours =
-            c.half_width ? fmt::format("{} +- {:.2g}", shown(c.ours), *c.half_width) : shown(c.ours);
-        cells.push_back({c.what, c.paper && c.source == Source::kDerived ? paper + " (derived)" : paper,
-                         with_unit(ours, c.unit), ratio ? fmt::format("{:.3g}", *ratio) : "-", c.remark});
-    }
-    return markdown_table(cells);
-}
-
-std::string claims_table(const std::vector<Claim>& claims) {
-    if (claims.empty()) return {};
-    Cells cells = {{"paper", "says", "verdict", "why"}};
-    for (const Claim& c : claims)
-        cells.push_back({fmt::format("{}, {}", c.paper, c.place), c.words, verdict_text(c.verdict), c.why});
-    return markdown_table(cells);
-}
-
 std::string list(const std::vector<std::string>& sentences) {
     return joined(sentences, "", [](const std::string& sentence) { return "- " + sentence + '\n'; });
+}
+
+std::string table_text(const TextCells& cells) { return cells.empty() ? "" : markdown_table(cells); }
+
+std::string repeat_text(const StudyPage& page) {
+    return joined(repeat_lines(page), "", [](const auto& line) {
+        const char* fence = line.second.find('`') == std::string::npos ? "`{}`" : "``` {} ```";
+        return fmt::format("- {}: {}\n", line.first, fmt::format(fmt::runtime(fence), line.second));
+    });
 }
 
 // Nothing for an empty text.
@@ -133,9 +96,8 @@ std::string section(const std::string& title, const std::string& text) {
 std::string table_section(const StudyTable& table) {
     const std::string file = fmt::format("[{0}.csv]({0}.csv)", table.name);
     if (!table.on_page) return section(table.title, fmt::format("{} rows, in {}.\n", table.rows.size(), file));
-    Cells cells = {each(table.columns, &Heading::text)};
-    for (const auto& row : table.rows) cells.push_back(each(row, [](const Cell& cell) { return shown(cell); }));
-    return section(table.title, fmt::format("{}\nWith all digits: {}.\n", markdown_table(cells), file));
+    const std::string cells = markdown_table(table_cells(table));
+    return section(table.title, fmt::format("{}\nWith all digits: {}.\n", cells, file));
 }
 
 std::string plots_text(const StudyPage& page, const PlotOutcome& plots) {
@@ -146,25 +108,12 @@ std::string plots_text(const StudyPage& page, const PlotOutcome& plots) {
                   [](const StudyPlot& plot) { return fmt::format("![{}]({}.svg)\n", plot.title, plot.name); });
 }
 
-void check_names(const StudyPage& page) {
-    std::set<std::string> tables, plots;
-    for (const StudyTable& table : page.tables) {
-        if (!tables.insert(table.name).second) throw std::invalid_argument("two tables are called " + table.name);
-        for (const auto& row : table.rows)
-            if (row.size() != table.columns.size())
-                throw std::invalid_argument(fmt::format("table {}: a row of {} cells under {} columns", table.name,
-                                                        row.size(), table.columns.size()));
-    }
-    for (const StudyPlot& plot : page.plots)
-        if (!plots.insert(plot.name).second) throw std::invalid_argument("two plots are called " + plot.name);
-}
-
 }  // namespace
 
 std::string table_csv(const StudyTable& table) {
     std::string text = joined(table.columns, ",", [](const Heading& h) { return csv_field(h.text()); }) + '\n';
     for (const auto& row : table.rows)
-        text += joined(row, ",", [](const Cell& cell) { return csv_field(exact(cell)); }) + '\n';
+        text += joined(row, ",", [](const Cell& cell) { return csv_field(exact_text(cell)); }) + '\n';
     return text;
 }
 
@@ -181,6 +130,8 @@ Json page_json(const StudyPage& page) {
             {"method", page.method},
             {"settings", page.settings},
             {"clock", page.clock},
+            {"run", run_json(page.run)},
+            {"beside", page.beside},
             {"comparisons", json_list(page.comparisons, comparison_json)},
             {"claims", json_list(page.claims, claim_json)},
             {"findings", page.findings},
@@ -193,17 +144,18 @@ std::string page_markdown(const StudyPage& page, const PlotOutcome& plots) {
     std::string text = fmt::format("# {}\n\n{}\n", page.title, page.question);
     text += section("How it was done", list(page.method));
     if (!page.clock.empty()) text += fmt::format("\nTimes: {}\n", page.clock);
-    if (!page.comparisons.empty()) text += section("Beside the paper", comparison_table(page.comparisons));
-    text += section("What the papers say", claims_table(page.claims));
+    text += section(comparison_title(page), table_text(comparison_cells(page)));
+    text += section("What the papers say", table_text(claim_cells(page)));
     text += section("What is seen", list(page.findings));
     text += section("What is new", list(page.news));
     for (const StudyTable& table : page.tables) text += table_section(table);
     text += section("Plots", plots_text(page, plots));
+    text += section("How to repeat it", repeat_text(page));
     return text + fmt::format("\nEverything on this page, for programs: [{0}.json]({0}.json).\n", page.name);
 }
 
 PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& page) {
-    check_names(page);
+    check_page(page);
     // A scene's label may be a path in any encoding; JSON must be UTF-8.
     const std::string json = page_json(page).dump(2);
     for (const StudyTable& table : page.tables) write_whole_file(folder / (table.name + ".csv"), table_csv(table));
@@ -214,12 +166,14 @@ PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& pag
 }
 
 std::string index_markdown(std::span<const StudyPage> pages) {
-    std::string text =
-        "# The load laboratory\n\nThe figures and tables of the paper (Kohata and Ito, 1993), computed again, and what "
-        "goes beyond them, in the order in which they are best read.\n";
+    const StudyPage about = page_about("laboratory", {});
+    std::string text = fmt::format("# {}\n\n{}\n\n{}", about.title, about.question, list(about.method));
+    text += section("Conclusion", list(verdict_sentences(pages)));
+    const std::string not_seen = list(claims_with(pages, ClaimVerdict::kNotReproduced));
+    if (!not_seen.empty()) text += "\nNot reproduced:\n\n" + not_seen;
     for (const StudyPage& page : pages) {
         text += fmt::format("\n## [{}]({}.md)\n\n{}\n", page.title, page.name, page.question);
-        if (!page.comparisons.empty()) text += '\n' + comparison_table(page.comparisons);
+        if (!page.comparisons.empty()) text += '\n' + table_text(comparison_cells(page));
         if (!page.findings.empty()) text += fmt::format("\n{}\n", page.findings.front());
     }
     return text;

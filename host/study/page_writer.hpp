@@ -19,7 +19,7 @@ Json cell_json(const Cell& cell);
 /// Everything on the page, the points of its plots too.
 Json page_json(const StudyPage& page);
 
-/// Question, method, the paper's figures beside ours, findings, tables and plots. Numbers have five digits, as a reader
+/// Question, method, the paper's figures beside ours, findings, tables, plots, how to repeat it. Numbers have five digits, as a reader
 /// wants them; the other files have all.
 std::string page_markdown(const StudyPage& page, const PlotOutcome& plots);
 
@@ -28,8 +28,8 @@ std::string page_markdown(const StudyPage& page, const PlotOutcome& plots);
 /// table whose rows do not fit its columns or for two tables or two plots of one name, and then writes nothing.
 PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& page);
 
-/// The story in order: title, question, the paper's figures beside ours and the first finding of each page, with links
-/// to the pages, which lie in the same folder.
+/// The story in order: what the verdicts come to; then title, question, the paper's figures beside ours and the first
+/// finding of each page, with links to the pages, which lie in the same folder.
 std::string index_markdown(std::span<const StudyPage> pages);
 
 /// Writes index_markdown() to index.md in `folder`. Throws UserError where it cannot be written.

@@ -32,6 +32,8 @@ StudyPage page_about(const std::string& name, const Json& settings, const Json& 
     for (std::string line; std::getline(lines, line) && !line.starts_with("## ");)
         if (line.starts_with("# "))
             page.title = filled(line.substr(2));
+        else if (line.starts_with("Beside: "))
+            page.beside = line.substr(8);
         else if (line.starts_with("- "))
             page.method.push_back(filled(line.substr(2)));
         else if (!line.empty())

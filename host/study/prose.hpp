@@ -10,8 +10,8 @@
 namespace raya {
 
 /// The page of the study NAME with its settings, and with title, question and method of NAME.md: a heading, a
-/// paragraph, a list. A word in braces there is filled from the settings, or else from `words`. std::logic_error for
-/// one that neither has.
+/// paragraph, a list; and, after "Beside: ", whose figures it compares with. A word in braces there is filled from the
+/// settings, or else from `words`. std::logic_error for one that neither has.
 StudyPage page_about(const std::string& name, const Json& settings, const Json& words = {});
 
 using fmt::literals::operator""_a;

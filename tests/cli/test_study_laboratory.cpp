@@ -37,15 +37,21 @@ TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[
          {"u(0)", "u(8)", "u(16)", "best p of all 32", "no plots", "/nonexistent", "python3-matplotlib", "fig8.md"})
         CHECK_THAT(run.out, Catch::Contains(part));
     const std::filesystem::path folder = outputs / "made/x";
-    CHECK(files_in(folder) == Files{"fig8.csv", "fig8.json", "fig8.md"});
+    CHECK(files_in(folder) == Files{"fig8.csv", "fig8.json", "fig8.md", "index.html"});
     const auto json = Document::parse(file_contents(folder / "fig8.json"));
     CHECK(json["study"] == "fig8");
     CHECK(json["settings"] == Document{{"scene", "centre"}, {"size", 32}, {"pes", 32}});
     CHECK(json["tables"][0]["rows"].size() == 32);
+    CHECK(json["run"]["command"] == "raya study fig8 --size 32 -o DIR");
+    CHECK(json["run"]["version"] == RAYA_VERSION);
+    CHECK_FALSE(json["run"]["driver"].get<std::string>().empty());
+    const std::string document = file_contents(folder / "index.html");
+    for (const char* part : {"Not drawn: ", "raya study fig8 --size 32 -o DIR", "python3-matplotlib", "</html>"})
+        CHECK_THAT(document, Catch::Contains(part));
     const std::string csv = file_contents(folder / "fig8.csv"), markdown = file_contents(folder / "fig8.md");
     CHECK(csv.starts_with("p,u\n0,"));
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 33);
-    CHECK_THAT(markdown, Catch::Contains("| u(0) | - |") && Catch::Contains("Not drawn"));
+    CHECK_THAT(markdown, Catch::Contains("## Chief figures") && Catch::Contains("Not drawn"));
 }
 
 TEST_CASE("a study with matplotlib has its plots, else the reason why not", "[cli]") {
@@ -53,7 +59,7 @@ TEST_CASE("a study with matplotlib has its plots, else the reason why not", "[cl
     const Outcome run = run_raya(study("fig7", outputs, {"--size", "20"}));
     INFO(run.told());
     REQUIRE(run.code == 0);
-    Files expected = {"fig7.csv", "fig7.json", "fig7.md"};
+    Files expected = {"fig7.csv", "fig7.json", "fig7.md", "index.html"};
     if (!contains(run.out, "no plots: ")) expected.insert({"fig7.svg", "fig7.png"});
     CHECK(files_in(outputs / "made/x") == expected);
 }

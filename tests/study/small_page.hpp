@@ -35,7 +35,9 @@ inline StudyPage small_page() {
                             {"steps", {0, 1, 2}, {1, 2, 3}, PlotStyle::kSteps},
                             {"scenes", {1, 1}, {0.25, 4}, PlotStyle::kPoints},
                             {"paper", {0}, {1.58}, PlotStyle::kPaper}};
-    page.settings = {{"pes", 256}};
+    page.settings = {{"pes", 256}, {"scene", "`a` <b>.nff"}};
+    page.beside = "A & B 1993";
+    page.run = {"1.2.3", "raya study small -o DIR", "a device", "a platform", "4.5"};
     return page;
 }
 

@@ -18,10 +18,11 @@ namespace raya {
 namespace {
 
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 using Row = std::vector<std::string>;
 
 const std::string kComparisons =
-    "|  | paper | ours | ours / paper | remark |\n"
+    "|  | A & B 1993 | ours | ours / theirs | remark |\n"
     "|---|---|---|---|---|\n"
     "| u(0) | 1.5 | 1.575 | 1.05 | calibrated |\n"
     "| image transfer | 140 ms (derived) | 35 +- 5 ms | 0.25 |  |\n"
@@ -32,7 +33,7 @@ const std::string kPage =
     "# A small study\n\nDoes it add up?\n"
     "\n## How it was done\n\n- One image.\n- Two mappings.\n"
     "\nTimes: modelled.\n"
-    "\n## Beside the paper\n\n" +
+    "\n## Beside A & B 1993\n\n" +
     kComparisons +
     "\n## What the papers say\n\n"
     "| paper | says | verdict | why |\n"
@@ -49,6 +50,8 @@ const std::string kPage =
     "\nWith all digits: [small.csv](small.csv).\n"
     "\n## All loads\n\n2 rows, in [small-long.csv](small-long.csv).\n"
     "\n## Plots\n\n{}\n"
+    "\n## How to repeat it\n\n- command: `raya study small -o DIR`\n- version: `raya 1.2.3`\n"
+    "- device: `a device (a platform, driver 4.5)`\n- pes: `256`\n- scene: ``` `a` <b>.nff ```\n"
     "\nEverything on this page, for programs: [small.json](small.json).\n";
 
 /// RFC 4180, read back by a reader that shares nothing with the writer.
@@ -88,6 +91,13 @@ TEST_CASE("a page leaves out what it does not have", "[page]") {
     page.question = "Why?";
     CHECK(page_markdown(page, {true, {}}) ==
           "# Bare\n\nWhy?\n\nEverything on this page, for programs: [bare.json](bare.json).\n");
+}
+
+TEST_CASE("a page beside nobody's figures has no columns for them", "[page]") {
+    StudyPage page = small_page();
+    for (Comparison& c : page.comparisons) c.paper.reset();
+    CHECK_THAT(page_markdown(page, {}), Contains("\n## Chief figures\n\n|  | ours | remark |\n|---|---|---|\n"
+                                                 "| u(0) | 1.575 | calibrated |\n"));
 }
 
 TEST_CASE("CSV has all digits and quotes what it must", "[page]") {
@@ -140,6 +150,12 @@ TEST_CASE("JSON has everything, with strings for what is infinite and null for w
     CHECK(compared[1]["source"] == "derived");
     CHECK(compared[1]["half_width"] == 5);
     CHECK(json["clock"] == "modelled.");
+    CHECK(json["beside"] == "A & B 1993");
+    CHECK(json["run"] == Document{{"version", "1.2.3"},
+                                  {"command", "raya study small -o DIR"},
+                                  {"device", "a device"},
+                                  {"platform", "a platform"},
+                                  {"driver", "4.5"}});
     CHECK(json["claims"][1] == Document{{"paper", "A & B 1993"},
                                         {"place", "Fig. 2"},
                                         {"words", "Always."},
@@ -155,6 +171,11 @@ TEST_CASE("JSON has everything, with strings for what is infinite and null for w
     CHECK(json["tables"][1]["rows"].size() == 2);
     const auto& plot = json["plots"][0];
     CHECK(plot["name"] == "small-u");
+    CHECK(
+        plot["description"] ==
+        "Across: offset p (pixels), from 0 to 2. Up: imbalance u, logarithmic, from 0.25 to 4. Series: ours: 3 points, "
+        "from 0.5 to 1.5, with 95 % intervals; steps: 3 points, from 1 to 3; scenes: 2 points, from 0.25 to 4; "
+        "paper: 1 point, at 1.58.");
     CHECK(plot["log_x"] == false);
     CHECK(plot["log_y"] == true);
     CHECK(plot["x_label"] == "offset p (pixels)");
@@ -228,11 +249,14 @@ TEST_CASE("the index tells the pages in their order", "[page]") {
     other.question = "And then?";
     const std::vector<StudyPage> pages = {small_page(), other};
     write_index(folder.path(), pages);
-    CHECK(contents_of(folder / "index.md") ==
-          "# The load laboratory\n\nThe figures and tables of the paper (Kohata and Ito, 1993), computed again, and "
-          "what goes beyond them, in the order in which they are best read.\n"
-          "\n## [A small study](small.md)\n\nDoes it add up?\n\n" +
-              kComparisons + "\nIt does.\n\n## [Another](other.md)\n\nAnd then?\n");
+    const std::string index = contents_of(folder / "index.md");
+    for (const char* part :
+         {"# The load laboratory\n", "Kohata & Ito 1993", "Yoshitani & Yamazaki", "Havran & Sixta 1999",
+          "\n## Conclusion\n\n- Of 2 claims of A & B 1993, 1 is reproduced, 0 are not, and 1 "
+          "cannot be told.\n"})
+        CHECK_THAT(index, Contains(part));
+    CHECK_THAT(index, EndsWith("\n## [A small study](small.md)\n\nDoes it add up?\n\n" + kComparisons +
+                               "\nIt does.\n\n## [Another](other.md)\n\nAnd then?\n"));
     CHECK(folder.entries() == 1);
 }
 

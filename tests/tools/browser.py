@@ -1,0 +1,106 @@
+"""A headless Chromium (Debian: chromium), spoken to over a pipe in Chrome's DevTools protocol with nothing but Python's own library."""
+import json, os, select, shutil, subprocess, tempfile, time
+
+PROGRAMS = ["chromium", "chromium-browser", "google-chrome"]
+PATIENCE = 60  # seconds
+
+
+def program():
+    """Its path; None where there is none."""
+    return next((path for path in map(shutil.which, PROGRAMS) if path), None)
+
+
+class Browser:
+    """One page in one browser. `events`: what the browser has told so far, as (method, parameters)."""
+
+    def __init__(self):
+        self.profile = tempfile.mkdtemp(prefix="raya-browser-")
+        down, self.out = os.pipe()  # fd 3 and 4 of the browser
+        self.into, up = os.pipe()
+
+        def take_pipes():
+            ends = os.dup(down), os.dup(up)  # out of the way of 3 and 4
+            os.dup2(ends[0], 3), os.dup2(ends[1], 4)
+
+        self.process = subprocess.Popen(
+            [program(), "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--hide-scrollbars",
+             "--disable-background-networking", "--disable-component-update", "--remote-debugging-pipe", f"--user-data-dir={self.profile}"],
+            preexec_fn=take_pipes, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(down), os.close(up)
+        self.rest, self.number, self.events, self.session = b"", 0, [], None
+        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for part in ("Page", "Network", "Runtime", "Log", "Accessibility"):
+            self.ask(part + ".enable")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+        os.close(self.out), os.close(self.into)
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+    def message(self, seconds):
+        """The next message; None after so many seconds without one."""
+        end = time.monotonic() + seconds
+        while b"\0" not in self.rest:
+            if not select.select([self.into], [], [], max(0, end - time.monotonic()))[0]:
+                return None
+            piece = os.read(self.into, 1 << 16)
+            if not piece:
+                raise RuntimeError("the browser has ended")
+            self.rest += piece
+        text, self.rest = self.rest.split(b"\0", 1)
+        return json.loads(text)
+
+    def ask(self, method, **parameters):
+        self.number += 1
+        command = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            command["sessionId"] = self.session
+        data = json.dumps(command).encode() + b"\0"
+        while data:
+            data = data[os.write(self.out, data):]
+        while True:
+            answer = self.message(PATIENCE)
+            if answer is None:
+                raise RuntimeError(f"no answer to {method}")
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']['message']}")
+                return answer["result"]
+            if "method" in answer:
+                self.events.append((answer["method"], answer.get("params", {})))
+
+    def wait_for(self, method):
+        while not any(name == method for name, _ in self.events):
+            message = self.message(PATIENCE)
+            if message is None:
+                raise RuntimeError(f"the browser never told of {method}")
+            if "method" in message:
+                self.events.append((message["method"], message.get("params", {})))
+
+    def open(self, url, width=1000, dark=False, scripts=True, media=""):
+        """Loads a page anew; events are those from then on."""
+        self.ask("Emulation.setScriptExecutionDisabled", value=not scripts)
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+        self.ask("Emulation.setEmulatedMedia", media=media,
+                 features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.events.clear()
+        self.ask("Page.navigate", url=url)
+        self.wait_for("Page.loadEventFired")
+
+    def value(self, expression):
+        """Of a JavaScript expression, in the page."""
+        answer = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(json.dumps(answer["exceptionDetails"])[:600])
+        return answer["result"].get("value")
+
+    def picture(self, file, whole=True):
+        import base64
+        data = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
+        with open(file, "wb") as out:
+            out.write(base64.b64decode(data))
