@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -121,6 +122,7 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted
         plots.push_back(write_page(command.folder, pages.back()));
         clear_status();
         print_page(pages.back(), plots.back(), command.folder);
+        std::fflush(stdout);  // how far it has come shows in a log too
     }
     write_document(command.folder, pages, plots);
     if (wanted.size() > 1) write_index(command.folder, pages);

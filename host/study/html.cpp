@@ -37,6 +37,9 @@ std::string row_of(const std::vector<std::string>& html, const std::vector<bool>
     return text + "</tr>\n";
 }
 
+// Without the header.
+std::size_t rows_of(const HtmlTable& table) { return table.html.empty() ? 0 : table.html.size() - 1; }
+
 }  // namespace
 
 std::string html_text(const std::string& text) {
@@ -86,15 +89,20 @@ std::string html_table(const HtmlTable& table) {
     return text + "</tbody></table></div>\n";
 }
 
-std::string html_folded_table(const HtmlTable& table, const std::string& summary, const std::string& rest) {
-    const std::size_t rows = table.html.empty() ? 0 : table.html.size() - 1;
+std::string html_cut_table(const HtmlTable& table, const std::string& rest) {
     HtmlTable shown = table;
     shown.html.resize(std::min(shown.html.size(), kMostRows + 1));
+    const std::size_t rows = rows_of(table);
     const std::string cut =
         rows > kMostRows ? fmt::format("The first {} of {} rows. ", kMostRows, rows) : std::string();
-    const std::string text = html_table(shown) + fmt::format("<p class=\"note\">{}{}</p>\n", cut, rest);
+    return html_table(shown) + fmt::format("<p class=\"note\">{}{}</p>\n", cut, rest);
+}
+
+std::string html_folded_table(const HtmlTable& table, const std::string& rest) {
+    const std::string text = html_cut_table(table, rest);
+    const std::size_t rows = rows_of(table);
     if (rows <= kOpenRows) return text;
-    return fmt::format("<details><summary>{} ({} rows)</summary>\n{}</details>\n", html_prose(summary), rows, text);
+    return fmt::format("<details><summary>{} rows</summary>\n{}</details>\n", rows, text);
 }
 
 }  // namespace raya

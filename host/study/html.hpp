@@ -33,8 +33,10 @@ struct HtmlTable {
 /// set and sorted; nothing for no rows.
 std::string html_table(const HtmlTable& table);
 
-/// The same, folded under `summary` where it is longer than a reader takes in at a glance; of one that is longer still
-/// the first rows alone. `rest`: HTML, where all rows are.
-std::string html_folded_table(const HtmlTable& table, const std::string& summary, const std::string& rest);
+/// The same, of a long one the first rows alone. `rest`: HTML, where all of them are.
+std::string html_cut_table(const HtmlTable& table, const std::string& rest);
+
+/// The same, folded away where it is more than a reader takes in at a glance.
+std::string html_folded_table(const HtmlTable& table, const std::string& rest);
 
 }  // namespace raya

@@ -46,9 +46,11 @@ std::string html_figure(const StudyPlot& plot, const std::string& file, const st
         std::ranges::any_of(plot.series, [](const PlotSeries& series) { return !series.half_widths.empty(); });
     std::string text = "<figure class=\"plot\">\n" + drawing_of(svg, plot, missing) + "<figcaption>";
     text += html_prose(plot.title) + '.' + (bars ? " Bars and bands: 95 % intervals." : "");
-    text += "</figcaption>\n<details" + std::string(svg.empty() ? " open" : "") + "><summary>Its points</summary>\n";
-    const std::string rest = fmt::format("With all digits: <a href=\"{0}\">{0}</a>.", html_text(json));
-    text += html_folded_table({plot.title + ": points", html_cells(point_cells(plot))}, "All", rest);
+    const TextCells points = point_cells(plot);
+    text += fmt::format("</figcaption>\n<details{}><summary>Its points ({})</summary>\n", svg.empty() ? " open" : "",
+                        points.size() - 1);
+    text += html_cut_table({plot.title + ": points", html_cells(points)},
+                           fmt::format("With all digits: <a href=\"{0}\">{0}</a>.", html_text(json)));
     return text + "</details>\n</figure>\n";
 }
 

@@ -23,8 +23,7 @@ std::string comparisons_html(const StudyPage& page) {
 
 std::string table_html(const StudyTable& table) {
     const std::string rest = "With all digits: " + link_to(table.name + ".csv") + '.';
-    return html_section(table.title,
-                        html_folded_table({table.title, html_cells(table_cells(table))}, table.title, rest));
+    return html_section(table.title, html_folded_table({table.title, html_cells(table_cells(table))}, rest));
 }
 
 std::string figures_html(const StudyPage& page, const PageFiles& files) {

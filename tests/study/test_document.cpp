@@ -129,7 +129,7 @@ TEST_CASE("a script in a scene's name is text, wherever the name comes to stand"
 TEST_CASE("a plot that could not be drawn says why, and its points are open to read", "[document]") {
     const std::vector<StudyPage> pages = {small_page()};
     const std::string html = document_html(pages, {{{false, "there is no <pen>"}}});
-    CHECK_THAT(html, Contains("Not drawn: there is no &lt;pen&gt;.") && Contains("<details open><summary>Its points"));
+    CHECK_THAT(html, Contains("Not drawn: there is no &lt;pen&gt;.") && Contains("<details open><summary>Its points (9)"));
     CHECK_THAT(html, Contains("<td>ours</td><td class=\"n\">0</td><td class=\"n\">1.5</td><td class=\"n\">0.25</td>"));
     CHECK_THAT(html, !Contains("<svg"));
 }
