@@ -52,6 +52,9 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     t.voxels = settings.voxels;
     t.links = links_name(settings.links);
     t.inject = settings.inject == Injection::kRoot ? "root" : "all";
+    t.packets = settings.packets;
+    t.returns = result.returns;
+    t.discarded = result.events[RAYA_DISCARDED];
     t.supersteps = result.supersteps.size();
     for (const Superstep& step : result.supersteps) t.live_max = std::max(t.live_max, step.live);
     t.made = result.made;

@@ -37,6 +37,16 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "that enter at its voxels",
         "root|all")
         ->default_str("all");
+    add("--returns", t.returns,
+        "What a return packet brings home in the model: one term of a ray, its ambient light, a light or the "
+        "background; or all of a ray in 6 words, when its shadow rays are done, as Yoshitani & Yamazaki have it",
+        "terms|rays")
+        ->default_str("terms");
+    add("--packet-words", t.packet_words,
+        "Words that a ray packet is charged for in the model, in its making and on links; 16 are moved, Yoshitani & "
+        "Yamazaki name 22 and more; 16..4096",
+        "N")
+        ->default_str("16");
     add("--queue", t.queue,
         "Packets that wait in a node at most; a queue that is too short is refused with the length that would do; "
         "default: what the memory leaves, at most 8192",
@@ -73,10 +83,12 @@ constexpr std::array<Foreign, 10> kOfRings = {
 
 constexpr const char* kNoNodes =
     "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
-constexpr std::array<Foreign, 6> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
+constexpr std::array<Foreign, 8> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
                                               {"--voxels", kNoNodes},
                                               {"--links", kNoNodes},
                                               {"--inject", kNoNodes},
+                                              {"--returns", kNoNodes},
+                                              {"--packet-words", kNoNodes},
                                               {"--queue", kNoNodes},
                                               {"--packets", kNoNodes}}};
 
@@ -103,6 +115,21 @@ Injection parse_injection(const std::string& text) {
     throw UserError(fmt::format("--inject {}: must be root or all", text));
 }
 
+bool is_return_a_ray(const std::string& text) {
+    if (text.empty() || text == "terms") return false;
+    if (text == "rays") return true;
+    throw UserError(fmt::format("--returns {}: must be terms or rays", text));
+}
+
+PacketCharge parse_charge(const TorusOptions& t) {
+    constexpr std::uint32_t kMostWords = 4096;
+    const PacketCharge charge{t.packet_words.value_or(RAYA_PACKET_WORDS), is_return_a_ray(t.returns)};
+    if (charge.ray_words < RAYA_PACKET_WORDS || charge.ray_words > kMostWords)
+        throw UserError(fmt::format("--packet-words {}: must be {}..{}", charge.ray_words,
+                                    std::uint32_t{RAYA_PACKET_WORDS}, kMostWords));
+    return charge;
+}
+
 Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
     if (t.voxels.empty()) return nodes;
     const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 together");
@@ -125,6 +152,7 @@ TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, cons
     settings.torus = make_torus(nodes, settings.links);
     settings.voxels = voxels_of(t, nodes);
     settings.inject = parse_injection(t.inject);
+    settings.packets = parse_charge(t);
     if (t.queue == 0u) throw UserError("--queue 0: must be 1 packet or more");
     settings.queue = t.queue.value_or(0);
     settings.memory_bytes = pe_memory_of(o, settings.machine);

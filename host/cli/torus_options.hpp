@@ -11,7 +11,8 @@ namespace raya {
 
 /// As given on the command line; what is empty has its default.
 struct TorusOptions {
-    std::string nodes, voxels, links, inject, packets;
+    std::string nodes, voxels, links, inject, returns, packets;
+    std::optional<std::uint32_t> packet_words;
     std::optional<std::uint32_t> queue;  // packets
 };
 

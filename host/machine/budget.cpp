@@ -130,6 +130,17 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .moves = 2,
      .branches = 2 + 1 + 1,
      .why = "the next voxel (Amanatides & Woo 1987, with the plane's place made anew in place of their addition)"},
+    // a primary ray's direction: 12, and its first voxel: 37, as above. Moves: j and x 2, origin 3, sum 3; the
+    // walk's 6.
+    // Branches: next pixel, those of the walk, whose voxel it is
+    {.event = RAYA_DISCARDED,
+     .multiply_accumulates = 12 + 37,
+     .divisions = 1 + 3,
+     .roots = 1,
+     .moves = 2 + 3 + 3 + 6,
+     .branches = 1 + 4 + 1,
+     .why = "a primary ray and its first voxel, which is another node's: no packet. One that misses the box is charged "
+            "as one that meets it"},
 }};
 
 constexpr bool in_order() {

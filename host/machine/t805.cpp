@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "host/machine/budget.hpp"
-#include "kernels/shared/packet.h"
 
 namespace raya {
 namespace {
@@ -11,23 +10,17 @@ namespace {
 // The terms stand in the order of machine/budget.cpp, where each is named.
 constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     // corner + j step, + x step, normalise: |d|^2, times 1 / |d|
-    {.event = RAYA_PRIMARY,
-     .additions = 3 + 3 + 2,
-     .multiplications = 3 + 3 + 3 + 3,
-     .packet_words = RAYA_PACKET_WORDS},
+    {.event = RAYA_PRIMARY, .additions = 3 + 3 + 2, .multiplications = 3 + 3 + 3 + 3, .makes = Makes::kRay},
     {.event = RAYA_PRIMARY_HITS},
     // weight
-    {.event = RAYA_REFLECTED, .multiplications = 1, .packet_words = RAYA_PACKET_WORDS},
+    {.event = RAYA_REFLECTED, .multiplications = 1, .makes = Makes::kRay},
     // cos, 1 - cos^2, e^2, g, e cos - root, times N, + e D, normalise, weight, P-
     {.event = RAYA_REFRACTED,
      .additions = 2 + 1 + 0 + 1 + 1 + 0 + 3 + 2 + 0 + 3,
      .multiplications = 3 + 1 + 1 + 1 + 1 + 3 + 3 + (3 + 3) + 1 + 3,
-     .packet_words = RAYA_PACKET_WORDS},
+     .makes = Makes::kRay},
     // arm, N.arm, |arm|^2, direction
-    {.event = RAYA_SHADOW,
-     .additions = 3 + 2 + 2 + 0,
-     .multiplications = 0 + 3 + 3 + 3,
-     .packet_words = RAYA_PACKET_WORDS},
+    {.event = RAYA_SHADOW, .additions = 3 + 2 + 2 + 0, .multiplications = 0 + 3 + 3 + 3, .makes = Makes::kRay},
     // b - s, b + s, against the nearest so far
     {.event = RAYA_SHADOW_HITS, .additions = 2 + 1},
     // C - O, b, l, r^2 - l.l
@@ -50,12 +43,9 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_SHADED,
      .additions = 3 + 3 + 3 + 2 + 2 + 3 + 3 + 3 + 2 + 0 + 3 + 0 + 0 + 3 + 0,
      .multiplications = 0 + 3 + 0 + (3 + 3) + 3 + 0 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
-     .packet_words = RAYA_RETURN_WORDS},
+     .makes = Makes::kReturn},
     // N.L, times tint, R.L, times I, into the sum: the shadow packet becomes a return packet
-    {.event = RAYA_LIT,
-     .additions = 2 + 0 + 2 + 0 + 3,
-     .multiplications = 3 + 3 + 3 + 3 + 3,
-     .packet_words = RAYA_RETURN_WORDS},
+    {.event = RAYA_LIT, .additions = 2 + 0 + 2 + 0 + 3, .multiplications = 3 + 3 + 3 + 3 + 3, .makes = Makes::kTerm},
     // x against 1, log2, times n, exp2, Ks, to three colours
     {.event = RAYA_HIGHLIGHTS,
      .additions = 1 + (2 + 0 + 3 + 1) + 0 + (1 + 1 + 6) + 0 + 3,
@@ -64,6 +54,8 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_WALKS, .additions = 6 + 4 + 3 * (1 + 1 + 1) + 3 * (1 + 1), .multiplications = 6 + 3 * 2 + 3 * 2},
     // smallest of three, voxel, next plane, minus O, times 1 / D, nearest hit against the voxel's far side
     {.event = RAYA_STEPS, .additions = 2 + 1 + 1 + 1 + 0 + 1, .multiplications = 0 + 0 + 1 + 0 + 1},
+    // the primary ray, then its first voxel
+    {.event = RAYA_DISCARDED, .additions = 8 + 25, .multiplications = 12 + 18},
 }};
 
 constexpr bool in_order() {
@@ -73,22 +65,37 @@ constexpr bool in_order() {
 }
 static_assert(in_order());
 
-std::uint32_t cycles_of(const T805Work& work, const Budget& budget) {
+std::uint32_t cycles_of(const T805Work& work, const Budget& budget, const PacketCharge& packets) {
     const std::uint32_t operations =
         work.additions + work.multiplications + budget.divisions + budget.roots;  // one operand each
     return kT805AdditionCycles * work.additions + kT805MultiplicationCycles * work.multiplications +
            kT805DivisionCycles * budget.divisions + kT805RootCycles * budget.roots + kT805OperandCycles * operations +
-           kT805MoveCycles * budget.moves + kT805StoreCycles * work.packet_words + kT805BranchCycles * budget.branches;
+           kT805MoveCycles * budget.moves + kT805StoreCycles * packets.words_of(work.makes) +
+           kT805BranchCycles * budget.branches;
 }
 
 }  // namespace
 
 const std::array<T805Work, RAYA_EVENTS>& t805_work() { return kWork; }
 
-std::array<std::uint32_t, RAYA_EVENTS> t805_cycles() {
+std::uint32_t PacketCharge::words_of(Makes made) const {
+    switch (made) {
+        case Makes::kRay:
+            return ray_words;
+        case Makes::kReturn:
+            return return_words();
+        case Makes::kTerm:
+            return return_a_ray ? 0 : return_words();
+        case Makes::kNothing:
+            break;
+    }
+    return 0;
+}
+
+std::array<std::uint32_t, RAYA_EVENTS> t805_cycles(const PacketCharge& packets) {
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};
     for (std::size_t event = 0; event < cycles.size(); ++event)
-        cycles[event] = cycles_of(kWork[event], budgets()[event]);
+        cycles[event] = cycles_of(kWork[event], budgets()[event], packets);
     return cycles;
 }
 

@@ -18,6 +18,7 @@
 #include <cstdint>
 
 #include "kernels/shared/events.h"
+#include "kernels/shared/packet.h"
 
 namespace raya {
 
@@ -30,18 +31,32 @@ inline constexpr std::uint32_t kT805OperandCycles = 2 + 2, kT805StoreCycles = 2 
                                kT805MoveCycles = kT805OperandCycles + kT805StoreCycles, kT805BranchCycles = 6;
 inline constexpr std::uint32_t kT805MessageCycles = 19, kT805MessageWordCycles = 2;
 
+/// What packet an event makes: a term is part of a return where a ray has but one.
+enum class Makes { kNothing, kRay, kReturn, kTerm };
+
+/// What packets are charged for, in words of 32 bits on links and in their making. As it is, what is moved
+/// (kernels/shared/packet.h): each contribution of a ray is a return. Or as Yoshitani & Yamazaki, Table 1 and protocol,
+/// have it: one return for each ray, of the fields that they mark: Layx, Layy, kind of ray, luminance r, g, b.
+struct PacketCharge {
+    std::uint32_t ray_words = RAYA_PACKET_WORDS;
+    bool return_a_ray = false;  // one return for each ray that is no shadow ray, when its shadow rays are done
+
+    std::uint32_t return_words() const { return return_a_ray ? 6 : RAYA_RETURN_WORDS; }
+    std::uint32_t words_of(Makes made) const;
+};
+
 /// What one event of a kind takes beside the divisions, roots, moves and branches of its budget (machine/budget.hpp).
 struct T805Work {
     int event = 0;  // RAYA_* of kernels/shared/events.h
     std::uint32_t additions = 0, multiplications = 0;
-    std::uint32_t packet_words = 0;  // stored, of the packet that it makes
+    Makes makes = Makes::kNothing;  // the packet's words are stored
 };
 
 /// One for each kind of event, in their order.
 const std::array<T805Work, RAYA_EVENTS>& t805_work();
 
 /// Modelled cycles of one event of each kind.
-std::array<std::uint32_t, RAYA_EVENTS> t805_cycles();
+std::array<std::uint32_t, RAYA_EVENTS> t805_cycles(const PacketCharge& packets = {});
 
 /// Cycles of the processor at one end of `messages` that have `words` in all.
 std::uint64_t t805_message_cycles(std::uint64_t messages, std::uint64_t words);

@@ -121,7 +121,7 @@ void add_ring(Json& json, const RenderReport& r) {
 
 void add_torus(Json& json, const RenderReport& r) {
     json["torus"] = torus_json(*r.torus);
-    json["budget"] = t805_budget_json(r.events);
+    json["budget"] = t805_budget_json(r.events, r.torus->packets);
     json["modelled_ms"] = torus_time_json(r.torus->modelled);
 }
 

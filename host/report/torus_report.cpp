@@ -6,7 +6,6 @@
 
 #include "host/files/json.hpp"
 #include "host/machine/budget.hpp"
-#include "host/machine/t805.hpp"
 #include "host/machine/unit_text.hpp"
 
 namespace raya {
@@ -26,6 +25,8 @@ std::string sides(const std::array<std::uint32_t, 3>& s) { return fmt::format("{
 
 }  // namespace
 
+const char* returns_name(const PacketCharge& packets) { return packets.return_a_ray ? "rays" : "terms"; }
+
 Json torus_json(const TorusReport& t) {
     Json packets;
     for (const Kind& kind : kKinds)
@@ -34,6 +35,9 @@ Json torus_json(const TorusReport& t) {
             {"voxels", t.voxels},
             {"links", t.links},
             {"inject", t.inject},
+            {"discarded", t.discarded},
+            {"returns", {{"of", returns_name(t.packets)}, {"messages", t.returns}}},
+            {"message_words", {{"ray", t.packets.ray_words}, {"return", t.packets.return_words()}}},
             {"supersteps", t.supersteps},
             {"packets", packets},
             {"live_max", t.live_max},
@@ -54,14 +58,14 @@ Json torus_time_json(const TorusTime& time) {
             {"links", time.links_ms},     {"overlapped", time.overlapped_ms}, {"stepwise", time.stepwise_ms}};
 }
 
-Json t805_budget_json(const EventCounts& events) {
+Json t805_budget_json(const EventCounts& events, const PacketCharge& packets) {
     const Operations shared = operations_of(events);
     std::uint64_t additions = 0, multiplications = 0, words = 0;
     for (std::size_t event = 0; event < events.size(); ++event) {
         const T805Work& work = t805_work()[event];
         additions += events[event] * work.additions;
         multiplications += events[event] * work.multiplications;
-        words += events[event] * work.packet_words;
+        words += events[event] * packets.words_of(work.makes);
     }
     return {{"additions", additions},        {"multiplications", multiplications},
             {"divisions", shared.divisions}, {"roots", shared.roots},
@@ -79,7 +83,9 @@ std::string torus_lines(const TorusReport& t) {
     for (const Kind& kind : kKinds)
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : " + ", t.made[kind.number], kind.name);
     std::string text = fmt::format("packets {} = {}; {} supersteps\n", made, kinds, t.supersteps);
-    text += fmt::format("links   {} packets over {} links, {} in all; {} over one on average, {} over the busiest\n",
+    text += fmt::format("charged {} returns of {}, {} words a ray and {} a return; {} primary rays thrown away\n",
+                        t.returns, returns_name(t.packets), t.packets.ray_words, t.packets.return_words(), t.discarded);
+    text += fmt::format("links   {} messages over {} links, {} in all; {} over one on average, {} over the busiest\n",
                         t.hops, t.link.count, data_text(static_cast<double>(t.link.total_bytes)),
                         data_text(t.link.mean_bytes()), data_text(static_cast<double>(t.link.max_bytes)));
     const TorusTime& m = t.modelled;

@@ -6,6 +6,7 @@
 
 #include "host/files/json.hpp"
 #include "host/machine/machine.hpp"
+#include "host/machine/t805.hpp"
 #include "host/machine/time_model.hpp"
 #include "kernels/shared/packet.h"
 
@@ -15,10 +16,13 @@ struct TorusReport {
     std::array<std::uint32_t, 3> nodes{}, voxels{};  // along x, y and z
     std::string links;                               // "torus3d" or "torus2d"
     std::string inject;                              // "root" or "all": who makes the primary rays
+    PacketCharge packets;                            // what the model charges
+    std::uint64_t returns = 0;                       // that are messages
+    std::uint64_t discarded = 0;                     // primary rays that nodes made and threw away
     std::uint64_t supersteps = 0;
     std::uint64_t live_max = 0;                             // most packets in all queues and boxes at a superstep's end
     std::array<std::uint64_t, RAYA_KINDS> made{}, ended{};  // packets of each kind (kernels/shared/packet.h)
-    std::uint64_t hops = 0;                                 // packets over links
+    std::uint64_t hops = 0;                                 // messages over links
 
     struct {
         std::uint64_t count = 0;      // that lead to another node, of all nodes; each is one way
@@ -40,8 +44,11 @@ Json torus_json(const TorusReport& report);
 
 Json torus_time_json(const TorusTime& time);
 
+/// "rays" or "terms": of what returns are made.
+const char* returns_name(const PacketCharge& packets);
+
 /// Operations of all that was counted, as a T805 does them (machine/t805.hpp).
-Json t805_budget_json(const EventCounts& events);
+Json t805_budget_json(const EventCounts& events, const PacketCharge& packets);
 
 /// For the summary's first line: nodes, links and voxels.
 std::string torus_machine_text(const TorusReport& report);

@@ -42,6 +42,9 @@ inline constexpr double kCapRatio = 3.86;                         // beside Fig.
 inline constexpr double kPixelMachineSpeedup = 60;                // beside Fig. 9: 64 nodes, "60 or more"
 inline constexpr double kRotationMs = 0.3125;                     // [D] Tables 3 and 4: 10 ms for 32 rotations
 
+// [D] Yoshitani & Yamazaki, about 1995, Table 1: scalars of a ray packet, beside data for the search and of the object.
+inline constexpr std::uint32_t kRayWords = 22;
+
 // Yoshitani & Yamazaki, about 1995, on Fig. 3: 1024 objects on one machine.
 inline constexpr std::uint32_t kFewDivisions = 32, kManyDivisions = 1024;
 inline constexpr double kFewDivisionsS = 313, kManyDivisionsS = 60;

@@ -27,6 +27,7 @@ TorusSettings settings_of(const TorusPlan& plan, std::uint32_t size) {
     s.links = plan.links;
     s.voxels = plan.voxels;
     s.inject = plan.inject;
+    s.packets = plan.packets;
     s.queue = plan.queue;
     s.pixels = plan.pixels;
     s.bounces = plan.bounces.value_or(s.machine.bounces);
@@ -75,6 +76,11 @@ std::uint64_t TorusRun::tests() const { return test_count(result.events); }
 
 std::uint64_t TorusRun::packets() const {
     return std::accumulate(result.made.begin(), result.made.end(), std::uint64_t{0});
+}
+
+double TorusRun::work_ms() const {
+    const auto& loads = result.load.per_pe;
+    return 1e-6 * kT805CycleNs * static_cast<double>(std::accumulate(loads.begin(), loads.end(), std::uint64_t{0}));
 }
 
 double TorusRun::per_ray(std::uint64_t count) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/study/laboratory.hpp"
+#include "host/study/paper.hpp"
 #include "host/study/scenes.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
@@ -21,10 +22,24 @@ struct TorusPlan {
     Divisions voxels{1, 1, 1};
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
+    PacketCharge packets = {};
     PixelSubset pixels = {};
     std::uint32_t queue = 0;                    // packets; 0: the renderer's default
     std::optional<std::uint32_t> bounces = {};  // empty: the machine's
 };
+
+/// Who makes primary rays, and what packets are charged for.
+struct Protocol {
+    const char* name;
+    Injection inject;
+    PacketCharge packets;
+};
+
+/// As Yoshitani & Yamazaki have it: the root sends all rays, each brings home one return, and a ray packet has the 22
+/// words of their Table 1, to which data for the search and of the object come, of sizes that they do not name.
+inline constexpr Protocol kProtocolOfPaper = {"Yoshitani & Yamazaki", Injection::kRoot, {paper::kRayWords, true}};
+/// As raya's machine has it by default.
+inline constexpr Protocol kProtocolOfRaya = {"raya", Injection::kAll, {}};
 
 /// Figures of one render.
 struct TorusRun {
@@ -39,8 +54,14 @@ struct TorusRun {
     std::uint64_t rays() const;     // of all kinds, shadow rays among them
     std::uint64_t tests() const;    // of rays against objects of all kinds
     std::uint64_t packets() const;  // made, of all kinds
+    std::uint64_t returns() const { return result.returns; }
+    std::uint64_t discarded() const { return result.events[RAYA_DISCARDED]; }
+    double work_ms() const;  // modelled: what all nodes compute together
     double overlapped_ms() const { return time.overlapped_ms; }
     double stepwise_ms() const { return time.stepwise_ms; }
+    double compute_ms() const { return time.compute_ms; }
+    double copies() const { return static_cast<double>(result.copies); }
+    double steps() const { return static_cast<double>(result.events[RAYA_STEPS]); }
     std::size_t supersteps() const { return result.supersteps.size(); }
     double imbalance() const { return result.load.imbalance; }
     double tests_per_ray() const { return per_ray(tests()); }

@@ -39,6 +39,7 @@ void LinkExchange::clear() {
                              sent_.size());
     visited_.assign(sent_.size(), 0);
     packets_.assign(sent_.size(), 0);
+    moved_ = 0;
 }
 
 void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>& words) {
@@ -49,8 +50,10 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
             const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
             if (packets == 0 || waits(status, link, node)) continue;
             sent_flags_[std::size_t{link} * nodes_ + node] = 1;
-            packets_[std::size_t{node} * RAYA_LINKS + link] += packets;
-            words[std::size_t{node} * RAYA_LINKS + link] += std::uint64_t{packets} * cargo_.packet_words;
+            const std::uint64_t messages = cargo_.charged_status ? status.at(node, *cargo_.charged_status) : packets;
+            packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
+            words[std::size_t{node} * RAYA_LINKS + link] += messages * cargo_.charged_words;
+            moved_ += packets;
         }
         const Session::Blocks boxes{.pitch = box_words(capacity_)};
         for (const Span& span : spans(status, link)) {

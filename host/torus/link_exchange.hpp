@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,13 @@ std::string link_name(std::uint32_t link);
 class LinkExchange {
   public:
     /// What the boxes are for: packets of so many words; where a node's status has its boxes' counts; the labels' first
-    /// word.
+    /// word. What the model charges: words of a message, and where the status has how many of the outbox's packets are
+    /// messages, if not all are.
     struct Cargo {
         std::string label;
         std::uint32_t packet_words, outbox_status, inbox_status;
+        std::uint32_t charged_words = packet_words;
+        std::optional<std::uint32_t> charged_status = {};
     };
 
     /// Boxes of `capacity` packets for every link of every node (kernels/shared/traffic.h).
@@ -32,15 +36,18 @@ class LinkExchange {
     /// One exchange: over each link whose inbox at the other end is empty, all packets of the outbox, labelled "LABEL
     /// +x" and so on. The links of one direction are one command, or several where boxes between must wait or differ so
     /// much in length that copying as much of each as the longest needs would take longer. Adds the words that each
-    /// link carried to `words`, [node][link].
+    /// link is charged for to `words`, [node][link].
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
     Buffer<std::uint32_t>& inboxes() { return inboxes_; }
     const Buffer<std::uint32_t>& sent() const { return sent_; }  // [link][node]: 1 where an outbox was copied
 
-    /// [node][link], since clear(): packets sent.
+    /// [node][link], since clear(): messages sent.
     const std::vector<std::uint64_t>& packets() const { return packets_; }
+
+    /// Since clear(): packets sent over all links, messages or not.
+    std::uint64_t moved() const { return moved_; }
 
     /// Calls `visit`, if there is one, with node and head of every packet that was put into an outbox since the last
     /// call.
@@ -65,6 +72,7 @@ class LinkExchange {
     std::vector<std::uint32_t> sent_flags_, flags_there_;  // what is to be, and what is, in sent_
     std::vector<std::uint32_t> visited_;  // [link][node]: packets of the outbox that visit_new() has shown
     std::vector<std::uint64_t> packets_;
+    std::uint64_t moved_ = 0;
     std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * cargo_.packet_words; }
     std::size_t box_at(std::uint32_t link, std::uint32_t node) const {
         return raya_box_at(link, nodes_, node, capacity_, cargo_.packet_words);

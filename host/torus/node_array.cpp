@@ -24,9 +24,23 @@ KernelOptions where_words_fit(KernelOptions options, const NodeMemories& memorie
     return options;
 }
 
-PacketRecord record_of(const raya_torus& torus, std::uint32_t superstep, std::uint32_t node, const raya_head& packet) {
-    PacketRecord record{.superstep = superstep, .source = node, .destination = RAYA_ROOT, .head = packet};
-    if (raya_state_kind(packet.state) == RAYA_KIND_RETURN) return record;
+bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
+
+// Whether a packet in an outbox is a message that its node has made.
+bool is_new_message(const raya_head& packet) {
+    return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
+}
+
+PacketRecord record_of(const TorusSettings& settings, std::uint32_t superstep, std::uint32_t node,
+                       const raya_head& packet) {
+    PacketRecord record{.superstep = superstep,
+                        .source = node,
+                        .destination = RAYA_ROOT,
+                        .head = packet,
+                        .words = settings.packets.return_words()};
+    if (is_return(packet)) return record;
+    record.words = settings.packets.ray_words;
+    const raya_torus& torus = settings.torus;
     const raya_place v = raya_unpack_place(packet.voxel);
     record.destination =
         raya_node_of(torus, v.at[0] % torus.nodes[0], v.at[1] % torus.nodes[1], v.at[2] % torus.nodes[2]);
@@ -58,9 +72,10 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       made_(session_.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
       ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
       rays_(session_, settings.torus, buffers.box,
-            {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
+            {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words}),
       homeward_(session_, settings.torus, buffers.box,
-                {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX}),
+                {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX,
+                 settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED}),
       inject_(kernels.get<node_kernels::Inject>()),
       trace_(kernels.get<node_kernels::TraceVoxel>()),
       route_(kernels.get<node_kernels::Route>()),
@@ -77,7 +92,8 @@ void NodeArray::set_pixels(const PixelSubset& pixels) {
                        .host = buffers_.queue,
                        .stride = pixels.stride,
                        .offset = pixels.first,
-                       .root_injects = settings_.inject == Injection::kRoot};
+                       .root_injects = settings_.inject == Injection::kRoot || nodes_ == 1,
+                       .return_a_ray = settings_.packets.return_a_ray};
     session_.write("scatter", run_, {&run, 1});
 }
 
@@ -113,7 +129,7 @@ void NodeArray::route() {
 void NodeArray::accept(Room room, std::uint32_t superstep) {
     session_.launch("accept", accept_, nodes_, options_.group_size, memories_, starts_, run_, room,
                     Uint<"turn">{superstep}, rays_.sent(), homeward_.sent(),
-                    LocalMemory<std::uint32_t>{options_.group_size}, queues_, rays_.inboxes(), homeward_.inboxes(),
+                    LocalMemory<std::uint32_t>{options_.group_size + 1}, queues_, rays_.inboxes(), homeward_.inboxes(),
                     homeward_.outboxes(), returns_, status_, ended_);
 }
 
@@ -149,7 +165,7 @@ void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const 
     }
     std::vector<PacketRecord> records;
     const auto take = [&](std::uint32_t node, const raya_head& packet) {
-        if (packet.state & RAYA_STATE_FRESH) records.push_back(record_of(settings_.torus, superstep, node, packet));
+        if (is_new_message(packet)) records.push_back(record_of(settings_, superstep, node, packet));
     };
     rays_.visit_new(status, take);
     homeward_.visit_new(status, take);

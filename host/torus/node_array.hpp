@@ -30,7 +30,7 @@ class NodeArray {
     void inject();
     void trace_voxel(Room room);
     void route();
-    /// Rays, then returns; returns the words that each link carried, [node][RAYA_LINKS].
+    /// Rays, then returns; returns the words that each link is charged for, [node][RAYA_LINKS].
     std::vector<std::uint64_t> exchange(const NodeStatus& status);
     void accept(Room room, std::uint32_t superstep);
 
@@ -40,15 +40,17 @@ class NodeArray {
     /// Return packets that have reached the root since the last call are appended.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
 
-    /// Packets in the outboxes that were made or changed by the node that sends them; for a trace of the traffic. To be
-    /// called in every superstep; with an empty sink those of this one are left out.
+    /// Messages in the outboxes that were made or changed by the node that sends them; for a trace of the traffic. To
+    /// be called in every superstep; with an empty sink those of this one are left out.
     void record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     std::vector<std::uint64_t> read_events();  // [node][RAYA_EVENTS]
     PacketCounts read_made();
     PacketCounts read_ended();
 
-    std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear()
+    std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear(): messages
+    std::uint64_t moved_rays() const { return rays_.moved(); }
+    std::uint64_t moved_returns() const { return homeward_.moved(); }
     const std::string& build_options() const { return build_options_; }
     bool words_local() const { return options_.words_local; }  // kernels copy a node's words into local memory
 

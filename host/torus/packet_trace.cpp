@@ -62,7 +62,7 @@ void PacketTrace::add(const PacketRecord& record) {
     const Lineage lineage = lineage_of(numbers_, record);
     auto to = std::back_inserter(text_);
     fmt::format_to(to, "{},{},{},{},{},{},", record.superstep, record.source, record.destination, kind,
-                   kWordBytes * raya_packet_words(state), lineage.ray);
+                   kWordBytes * record.words, lineage.ray);
     if (lineage.parent) fmt::format_to(to, "{}", *lineage.parent);
     text_ += '\n';
     ++rows_;

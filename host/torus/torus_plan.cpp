@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "host/error.hpp"
-#include "host/machine/t805.hpp"
 #include "host/scene/word_records.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/windows.hpp"
@@ -14,7 +13,7 @@
 namespace raya {
 
 JobSettings job_settings(const TorusSettings& s, const LengthScale& scale) {
-    return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(), s.format, scale.exponent};
+    return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(s.packets), s.format, scale.exponent};
 }
 
 TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/machine/t805.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/census.hpp"
 #include "host/torus/composer.hpp"
@@ -213,6 +212,7 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
 void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<raya_head>& returns) {
     const StepLog::Step step = session.step("compose");
     result.contributions = returns.size();
+    for (const raya_head& packet : returns) result.returns += (packet.state & RAYA_STATE_CHARGED) != 0;
     const std::uint32_t pixels = settings.width * settings.height;
     result.image = {static_cast<int>(settings.width), static_cast<int>(settings.height),
                     composer->compose(sort_contributions(returns, pixels))};
@@ -221,7 +221,7 @@ void TorusRenderer::Parts::compose(TorusResult& result, const std::vector<raya_h
 void TorusRenderer::Parts::collect(TorusResult& result) {
     const StepLog::Step step = session.step("collect");
     const std::vector<std::uint64_t> events = nodes->read_events();
-    const auto cycles = t805_cycles();
+    const auto cycles = t805_cycles(settings.packets);
     std::vector<std::uint64_t> loads(raya_nodes(settings.torus));
     for (std::size_t i = 0; i < events.size(); ++i) {
         result.events[i % RAYA_EVENTS] += events[i];
@@ -235,6 +235,8 @@ void TorusRenderer::Parts::collect(TorusResult& result) {
         result.queue_max = std::max<std::uint64_t>(result.queue_max, status.at(node, RAYA_STATUS_QUEUE_MAX));
     result.link_packets = nodes->link_packets();
     for (const std::uint64_t packets : result.link_packets) result.hops += packets;
+    result.moved_rays = nodes->moved_rays();
+    result.moved_returns = nodes->moved_returns();
 }
 
 // Nothing is lost: a machine that has lost or doubled a packet has no image to show.
@@ -246,6 +248,12 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
     if (result.made[RAYA_KIND_PRIMARY] != pixels_of(settings))
         throw std::logic_error(
             fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], pixels_of(settings)));
+    const EventCounts& e = result.events;
+    const std::uint64_t returns = settings.packets.return_a_ray
+                                      ? e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED]
+                                      : result.made[RAYA_KIND_RETURN];
+    if (result.returns != returns)
+        throw std::logic_error(fmt::format("{} returns are messages, not {}", result.returns, returns));
 }
 
 // Of the fullest node.

@@ -25,11 +25,13 @@ struct TorusResult {
     Load load;  // modelled cycles of each node
     std::vector<Superstep> supersteps;
     PacketCounts made{}, ended{};
-    std::uint64_t hops = 0;                   // packets over links
-    std::vector<std::uint64_t> link_words;    // [node][RAYA_LINKS]: words sent over each link
-    std::vector<std::uint64_t> link_packets;  // [node][RAYA_LINKS]
-    std::uint64_t queue_max = 0;              // most packets that any node's queue held
-    std::uint64_t copies = 0;                 // of objects in several voxels
+    std::uint64_t returns = 0;                        // that are messages of their own (TorusSettings::packets)
+    std::uint64_t hops = 0;                           // messages over links
+    std::vector<std::uint64_t> link_words;            // [node][RAYA_LINKS]: charged for over each link
+    std::vector<std::uint64_t> link_packets;          // [node][RAYA_LINKS]: messages
+    std::uint64_t moved_rays = 0, moved_returns = 0;  // packets over links, as the device moved them
+    std::uint64_t queue_max = 0;                      // most packets that any node's queue held
+    std::uint64_t copies = 0;                         // of objects in several voxels
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // of the fullest node: words and buffers

@@ -6,6 +6,7 @@
 #include "host/accel/partition.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/machine/machine.hpp"
+#include "host/machine/t805.hpp"
 #include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
 
@@ -26,6 +27,7 @@ struct TorusSettings {
     Links links = Links::kTorus3d;  // that `torus` was made with
     Divisions voxels{};
     Injection inject = Injection::kAll;
+    PacketCharge packets;                       // what the model charges, whatever is moved
     std::uint32_t queue = 0;                    // packets that a node's queue holds; 0: what its memory leaves
     std::optional<std::uint64_t> memory_bytes;  // of a node; empty: no limit
     PixelSubset pixels;

@@ -1,6 +1,5 @@
 #include "host/torus/torus_work.hpp"
 
-#include <numeric>
 #include <utility>
 
 #include "kernels/shared/traffic.h"
@@ -25,27 +24,14 @@ std::uint64_t packet_bytes(const PacketCounts& made) {
     return kWordBytes * words;
 }
 
-struct Hops {
-    std::uint64_t rays, returns;
-};
-
-// Packets over links, by their words: W = 16 rays + 8 returns, N = rays + returns.
-Hops hops_of(const TorusResult& r) {
-    static_assert(RAYA_PACKET_WORDS == 2 * RAYA_RETURN_WORDS);
-    const std::uint64_t words = std::accumulate(r.link_words.begin(), r.link_words.end(), std::uint64_t{0});
-    const std::uint64_t rays = words / RAYA_RETURN_WORDS - r.hops;
-    return {rays, r.hops - rays};
-}
-
 }  // namespace
 
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
     EventCounts primary{}, others = r.events;
-    primary[RAYA_PRIMARY] = std::exchange(others[RAYA_PRIMARY], 0);
+    for (const std::size_t made : {RAYA_PRIMARY, RAYA_DISCARDED}) primary[made] = std::exchange(others[made], 0);
     PacketCounts rays{}, followers = r.made;
     rays[RAYA_KIND_PRIMARY] = std::exchange(followers[RAYA_KIND_PRIMARY], 0);
-    const Hops hops = hops_of(r);
     const auto opened = [&](const char* label) { return launches_of(r, label) * kWordBytes * r.copied_words; };
 
     KernelWork inject = work_of("inject", primary), trace = work_of("trace_voxel", others);
@@ -56,9 +42,9 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
     KernelWork route, accept, compose;
     route.label = "route";
     route.bytes = opened("route") +
-                  2 * kWordBytes * (hops.rays * RAYA_PACKET_WORDS + r.made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
+                  2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
     accept.label = "accept";
-    accept.bytes = 2 * kWordBytes * (hops.rays * RAYA_PACKET_WORDS + hops.returns * RAYA_RETURN_WORDS);
+    accept.bytes = 2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.moved_returns * RAYA_RETURN_WORDS);
     compose.label = "compose";  // of each contribution three multiply-adds
     compose.operations = 3 * r.contributions;
     compose.bytes = r.contributions * 4 * sizeof(float) + kWordBytes * (pixels + 1) + 3 * sizeof(float) * pixels;

@@ -27,6 +27,7 @@ class Projection {
                     step;
     }
 
+    const Vec3& eye() const { return eye_; }
     double margin() const { return margin_; }
 
     // Column and row of P; false where it lies beside or behind the eye.
@@ -49,14 +50,29 @@ struct Bounds {
     double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     bool whole = false;  // no bounds are known
+    bool any() const { return whole || low[0] <= high[0]; }
 };
 
-void add_voxel(Bounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
-    const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
-    for (std::uint32_t corner = 0; corner < 8 && !bounds.whole; ++corner) {
+// Places on the two ends of the box along one axis, and how far rounding puts a ray's entry off (grid/walk.clh): a few
+// units in the last place of fp32, for the way of the ray and its origin.
+struct Side {
+    double low, high, slack;
+};
+
+Side side_of(const raya_grid& grid, std::uint32_t axis, double eye) {
+    const double low = raya_voxel_plane(grid, axis, 0), high = raya_voxel_plane(grid, axis, grid.divisions[axis]);
+    return {low, high, std::ldexp(std::abs(eye) + std::max(std::abs(low), std::abs(high)), -20)};
+}
+
+// The face of a voxel across an axis, at its plane k.
+void add_face(Bounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
+              std::uint32_t axis, std::uint32_t k) {
+    for (std::uint32_t corner = 0; corner < 4 && !bounds.whole; ++corner) {
+        const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
         Vec3 p;
-        for (std::uint32_t axis = 0; axis < 3; ++axis)
-            p[axis] = raya_voxel_plane(grid, axis, at.at[axis] + (corner >> axis & 1));
+        p[axis] = raya_voxel_plane(grid, axis, k);
+        p[second] = raya_voxel_plane(grid, second, at.at[second] + (corner & 1));
+        p[third] = raya_voxel_plane(grid, third, at.at[third] + (corner >> 1));
         double place[2];
         bounds.whole = !projection.pixel(p, place[0], place[1]);
         for (int i = 0; i < 2 && !bounds.whole; ++i) {
@@ -64,6 +80,22 @@ void add_voxel(Bounds& bounds, const Projection& projection, const raya_grid& gr
             bounds.high[i] = std::max(bounds.high[i], place[i]);
         }
     }
+}
+
+void add_voxel(Bounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
+    const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
+    bool holds_eye = true;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const double eye = projection.eye()[axis];
+        const Side box = side_of(grid, axis, eye);
+        const double low = raya_voxel_plane(grid, axis, at.at[axis]),
+                     high = raya_voxel_plane(grid, axis, at.at[axis] + 1);
+        holds_eye = holds_eye && eye >= low - box.slack && eye <= high + box.slack;
+        if (eye < box.low && low <= box.low + box.slack) add_face(bounds, projection, grid, at, axis, at.at[axis]);
+        if (eye > box.high && high >= box.high - box.slack)
+            add_face(bounds, projection, grid, at, axis, at.at[axis] + 1);
+    }
+    bounds.whole = bounds.whole || holds_eye;
 }
 
 std::uint32_t clamped(double value, std::uint32_t most) {
@@ -80,13 +112,13 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
     std::vector<PixelWindow> windows;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         Bounds bounds;
-        bounds.whole = format.fraction_bits < kFewestBits;
         const std::uint32_t voxels = raya_node_voxels(torus, grid, node);
+        bounds.whole = voxels > 0 && format.fraction_bits < kFewestBits;
         for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)
             add_voxel(bounds, projection, grid, raya_voxel_of_node(torus, grid, node, i));
         PixelWindow window{{0, height}, {0, width}};
-        if (voxels == 0) window = {{0, 0}, {0, 0}};
-        if (voxels > 0 && !bounds.whole) {
+        if (!bounds.any()) window = {{0, 0}, {0, 0}};
+        if (bounds.any() && !bounds.whole) {
             const double m = projection.margin();
             window = {
                 {clamped(std::floor(bounds.low[1] - m), height), clamped(std::ceil(bounds.high[1] + m) + 1, height)},

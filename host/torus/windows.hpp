@@ -1,4 +1,4 @@
-// Which pixels' rays may enter the box at which node's voxels.
+// Which pixels' rays may enter the box at which node's voxels: by the faces of the box that the eye sees.
 #pragma once
 #include <vector>
 
@@ -12,9 +12,10 @@ struct PixelWindow {
     std::uint32_t rows[2], columns[2];
 };
 
-/// For each node a window that holds every pixel whose primary ray meets one of its voxels. Widened by what the format
-/// can turn a ray; the whole image where a voxel lies beside or behind the eye, or the format has so few bits that no
-/// bound is known. Empty for a node without voxels.
+/// For each node a window that holds every pixel whose primary ray enters the box at one of its voxels: all where the
+/// eye is in that voxel; else those that its faces in the sides of the box before the eye cover, widened by what the
+/// format can turn a ray. The whole image where such a face lies beside or behind the eye, or the format has so few
+/// bits that no bound is known. Empty for a node where no ray enters.
 std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
                                        const NumberFormat& format);
 

@@ -18,6 +18,7 @@ enum {
     RAYA_HIGHLIGHTS,     // powers for a highlight
     RAYA_WALKS,          // rays that met the box of the voxels, or went down the tree of boxes
     RAYA_STEPS,          // voxels that rays entered, the first one among them; nodes of the tree
+    RAYA_DISCARDED,      // primary rays that a node of the torus made and threw away, as they are other nodes'
     RAYA_EVENTS          // how many kinds there are
 };
 

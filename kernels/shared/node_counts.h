@@ -23,6 +23,6 @@ enum {
     RAYA_GONE,               // nowhere: there is no packet
     RAYA_GOALS
 };
-#define RAYA_ROUTE_WORDS (2 * RAYA_GOALS + 1)  // that route shares, beside one for each work-item
+#define RAYA_ROUTE_WORDS (2 * RAYA_GOALS + 2)  // that route shares, beside one for each work-item
 
 #endif

@@ -67,7 +67,7 @@ enum {  // kinds; 0: no packet
     RAYA_KINDS
 };
 
-// State: kind in bits 0..2, flags in 3..5, level in 8..12, light in 16..31.
+// State: kind in bits 0..2, flags in 3..6, level in 8..12, light in 16..31.
 #define RAYA_STATE_KIND 0x7u
 // Must be tested against all objects (kernels/grid/walk.clh): visits all voxels in turn, from one of the node where it
 // was made on, and is shaded where its nearest hit was found.
@@ -76,6 +76,9 @@ enum {  // kinds; 0: no packet
 #define RAYA_STATE_FOUND 0x10u
 // Made or changed by this node, and not sent yet: what a trace of the traffic shows as a message of its own.
 #define RAYA_STATE_FRESH 0x20u
+// Of a return: a message of its own to the model, which others of its ray go with for nothing. Of a shadow ray: its end
+// makes one, as its ray is done with it (raya_run.return_a_ray).
+#define RAYA_STATE_CHARGED 0x40u
 #define RAYA_STATE_LEVEL_SHIFT 8u
 #define RAYA_STATE_LIGHT_SHIFT 16u
 #define RAYA_MOST_LIGHTS 65535u
@@ -89,7 +92,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_state_kind(raya_u32 state) { return state & R
 RAYA_SHARED_FUNCTION raya_u32 raya_state_level(raya_u32 state) { return state >> RAYA_STATE_LEVEL_SHIFT & 31u; }
 RAYA_SHARED_FUNCTION raya_u32 raya_state_light(raya_u32 state) { return state >> RAYA_STATE_LIGHT_SHIFT; }
 
-// Words of a packet on a link.
+// Words of a packet as it is moved; what the model charges for it is the host's business (host/machine/t805.hpp).
 RAYA_SHARED_FUNCTION raya_u32 raya_packet_words(raya_u32 state) {
     return raya_state_kind(state) == RAYA_KIND_RETURN ? (raya_u32)RAYA_RETURN_WORDS : (raya_u32)RAYA_PACKET_WORDS;
 }

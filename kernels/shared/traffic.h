@@ -27,7 +27,8 @@ enum {
     RAYA_STATUS_INBOX = 15,         // rays left in the inbox of each link that leads here
     RAYA_STATUS_RETURN_OUTBOX = 21, // returns in the outbox of each link; other links than the one home stay empty
     RAYA_STATUS_RETURN_INBOX = 27,  // returns left in the inbox of each link that leads here
-    RAYA_STATUS_WORDS = 33
+    RAYA_STATUS_RETURN_CHARGED = 33,// returns in the outbox of the link home that are messages of their own
+    RAYA_STATUS_WORDS = 34
 };
 
 // What stays the same through a render, and the nodes read from a buffer.
@@ -36,9 +37,10 @@ typedef struct {
     raya_u32 box;             // packets that a box holds
     raya_u32 host;            // returns that wait for the host at most
     raya_u32 stride, offset;  // primary rays are those of the pixels offset, offset + stride, ..., counted row by row
-    raya_u32 root_injects;    // 1: the root makes all primary rays; 0: every node its own
+    raya_u32 root_injects;    // 1: the root makes all primary rays, or there is no other node; 0: every node its own
+    raya_u32 return_a_ray;    // 1: one return of each ray is a message, made when its shadow rays are done; 0: all are
 } raya_run;
-RAYA_SHARED_SIZE(raya_run, 4 * 6);
+RAYA_SHARED_SIZE(raya_run, 4 * 7);
 
 // Packets that a ray may turn into beside the one that takes its slot: shadow rays (lights or a return for
 // each) and two rays that follow.

@@ -46,8 +46,9 @@ static inline uint empty_inbox(__global uint* inbox, open_queue* queue, __local 
 }
 
 // Moves returns from an inbox to `to`, which holds `used` of at most `capacity`, and returns their number. `left`
-// returns stay, at the inbox's front. Has barriers.
-static inline uint pass_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left) {
+// returns stay, at the inbox's front. Adds those that are messages of their own to `charged`. Has barriers.
+static inline uint pass_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
+                                volatile __local uint* charged) {
     __global raya_head* const returns = returns_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0], moves = min(waiting, capacity - used);
     *left = waiting - moves;
@@ -55,6 +56,7 @@ static inline uint pass_returns(__global uint* inbox, __global raya_head* to, ui
         raya_head packet = returns[i];
         packet.state &= ~RAYA_STATE_FRESH;
         to[used + i] = packet;
+        if (packet.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
     }
     for (uint first = 0; moves > 0 && first < *left; first += RAYA_GROUP) {
         const uint i = first + item;
@@ -74,7 +76,7 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
             const uint turn,                            // number of the superstep: which link comes first
             __global const uint* restrict sent,         // [link][node]: 1 where its outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: ... of returns
-            __local uint* goals,                        // L words
+            __local uint* goals,                        // L + 1 words
             __global raya_packet* restrict queues,      // [node][queue]
             __global uint* restrict inboxes,            // of rays (kernels/shared/traffic.h)
             __global uint* restrict return_inboxes,
@@ -98,6 +100,9 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     const int gone = root || return_sent[(size_t)home * nodes + number];
     const uint home_before = gone ? 0 : status[RAYA_STATUS_RETURN_OUTBOX + home];
     uint home_used = home_before;
+    __local uint* const charged = goals + RAYA_GROUP;
+    if (item == 0) *charged = gone ? 0 : status[RAYA_STATUS_RETURN_CHARGED];
+    node_barrier();
     for (uint i = 0; i < RAYA_LINKS; ++i) {
         const uint link = (i + turn) % RAYA_LINKS;
         const uint start = raya_link_end(torus, number, link ^ 1);  // of the link that leads here
@@ -105,7 +110,8 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
         __global uint* return_inbox = return_inboxes + raya_box_at(link, nodes, start, box, RAYA_RETURN_WORDS);
         const uint left = empty_inbox(inbox, &queue, goals);
         uint returns_left;
-        home_used += pass_returns(return_inbox, homeward, home_used, root ? run->host : box, &returns_left);
+        home_used += pass_returns(return_inbox, homeward, home_used, root ? run->host : box, &returns_left,
+                                  charged);
         node_barrier();
         if (item) continue;
         inbox[0] = left;
@@ -120,6 +126,7 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
         ended[RAYA_ROOT * RAYA_KINDS + RAYA_KIND_RETURN] += home_used;
     } else {
         status[RAYA_STATUS_RETURN_OUTBOX + home] = home_used;
+        status[RAYA_STATUS_RETURN_CHARGED] = *charged;
     }
     status[RAYA_STATUS_QUEUE] = queue.used;
     status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], queue.used);

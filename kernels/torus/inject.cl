@@ -3,7 +3,7 @@
 // One work-group is one node. Where the root makes all rays, it takes all pixels in turn and the other nodes do
 // nothing. Else every node makes the rays that enter the box at one of its voxels: it looks at the window of
 // pixels where they must lie, which the host has given it, and keeps those that do. Rays that miss the box belong
-// to the row's node: row mod nodes.
+// to the row's node: row mod nodes. A ray that is made and thrown away is work too, and counted (RAYA_DISCARDED).
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
 //         make their rays and find their first voxels                      (shading/camera.clh, grid/walk.clh)
@@ -14,41 +14,9 @@
 // arrive and packets that hits turn into find room.
 #include "kernels/shading/camera.clh"
 #include "kernels/torus/flight.clh"
+#include "kernels/torus/pixel_rows.clh"
 
 #define RAYA_STEP (RAYA_GROUP * RAYA_LANES)
-
-// A row of pixels that the node looks at: `count` of them, `stride` columns apart.
-typedef struct {
-    uint row, column, count;
-    int misses, hits;  // whether the node makes the rays that miss the box, those that meet it
-} pixel_row;
-
-static inline uint rows_of_window(node_words header) { return header->window[1] - header->window[0]; }
-
-// How many rows the node looks at: those of its window, then those whose misses are its own; the root
-// all rows, if it makes all rays.
-static inline uint rows_of(const node* n, int root) {
-    const node_words header = (node_words)n->memory;
-    const uint height = header->job.mapping.height, nodes = raya_nodes(n->torus);
-    if (root) return n->number == RAYA_ROOT ? height : 0;
-    return rows_of_window(header) + (n->number < height ? (height - n->number - 1) / nodes + 1 : 0);
-}
-
-static inline pixel_row row_of(const node* n, uint i, uint stride, uint offset, int root) {
-    const node_words header = (node_words)n->memory;
-    const uint width = header->job.mapping.width, rows = rows_of_window(header);
-    const int in_window = !root && i < rows;
-    pixel_row p;
-    p.row = root ? i : in_window ? header->window[0] + i : n->number + (i - rows) * raya_nodes(n->torus);
-    p.hits = root || in_window;
-    p.misses = root || !in_window;
-    const uint first = in_window ? header->window[2] : 0, end = in_window ? header->window[3] : width;
-    // The first column from there on whose pixel number is offset mod stride.
-    const uint number = (uint)(((ulong)p.row * width + first) % stride);
-    p.column = first + (offset + stride - number) % stride;
-    p.count = p.column < end ? (end - p.column - 1) / stride + 1 : 0;
-    return p;
-}
 
 // The primary rays of pixels first .. first + V - 1 of the row, and which of them the node makes.
 typedef struct {
@@ -133,6 +101,15 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
     return waits;
 }
 
+// How many rays of the lanes are not the node's, of the pixels before `next`: those behind are made again.
+static inline uint discarded(const primaries* p, uint first, uint next) {
+    lanes_index own;
+    own.truth = p->own;
+    uint number = 0;
+    for (uint lane = 0; lane < RAYA_LANES && first + lane < next; ++lane) number += !own.lane[lane];
+    return number;
+}
+
 // Makes rays of the row from its pixel `at` on until the queue has `most` packets; returns the next pixel to look at.
 // Has barriers.
 static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, const injection* to) {
@@ -153,6 +130,7 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
         if (waits < end) atomic_min(next, waits);
         node_barrier();
         at = *next;
+        count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_DISCARDED, discarded(&p, first, at));
         if (item == 0) *used = min(before + all, to->most);
         node_barrier();
     }

@@ -38,7 +38,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
 {
     const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0), box = run->box;
     __local uint *used = local_words, *limit = used + RAYA_GOALS, *goals = limit + RAYA_GOALS;
-    __local uint* moved = goals + RAYA_GROUP;
+    __local uint *moved = goals + RAYA_GROUP, *charged = moved + 1;
     status += (size_t)number * RAYA_STATUS_WORDS;
     __global raya_packet* const queue = queues + (size_t)number * run->queue;
     const uint count = status[RAYA_STATUS_QUEUE];
@@ -56,6 +56,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         used[RAYA_HOME] = status[home_status];
         limit[RAYA_HOME] = root ? run->host : box;
         used[RAYA_STAYS] = used[RAYA_GONE] = *moved = 0;
+        *charged = status[RAYA_STATUS_RETURN_CHARGED];
     }
     for (uint first = 0; first < count; first += RAYA_GROUP) {
         const uint slot = first + item;
@@ -72,6 +73,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         // Packets that stay move to a slot that this loop has read already.
         if (goal == RAYA_STAYS) queue[place] = packet;
         if (goal == RAYA_HOME) homeward[place] = packet.head;
+        if (goal == RAYA_HOME && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
         if (goal < RAYA_LINKS)
             rays_in(outboxes + raya_box_at(goal, nodes, number, box, RAYA_PACKET_WORDS))[place] = packet;
         node_barrier();
@@ -92,6 +94,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
     if (root) ended[RAYA_ROOT * RAYA_KINDS + RAYA_KIND_RETURN] += used[RAYA_HOME] - status[home_status];
     if (!root) home_box[0] = used[RAYA_HOME];
     status[home_status] = used[RAYA_HOME];
+    status[RAYA_STATUS_RETURN_CHARGED] = root ? 0 : *charged;
     status[RAYA_STATUS_QUEUE] = used[RAYA_STAYS];
     status[RAYA_STATUS_PROGRESS] += *moved;
 }

@@ -10,7 +10,8 @@
 //         a ray whose nearest hit lies before its way out of the voxel, or that has left the box, is done: it turns
 //             into a return packet and the packets of the rays that follow (torus/shade_packets.clh), or a return
 //             packet with the background
-//         a shadow ray that meets an object ends; one that comes to its light turns into a return packet
+//         a shadow ray that meets an object ends; one that comes to its light turns into a return packet; one that its
+//         ray waits for does so either way (raya_run.return_a_ray)
 //         all others go on to the next voxel                                              (grid/walk.clh)
 //
 // Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across
@@ -63,18 +64,26 @@ static inline void move_packets(flight* f, mask m, index place) {
     }
 }
 
-// Shadow rays that came to their lights: what they carry becomes a contribution to the pixel.
-static inline void arrive(flight* f, mask m) {
+// What shadow rays of the lanes carry becomes a contribution to the pixel, of those that came to their lights; of
+// those that were stopped, nothing does.
+static inline void put_light(flight* f, mask m, mask arrived) {
     lanes_index chosen;
     lanes_vec colour;
-    chosen.truth = m;
+    chosen.truth = arrived;
     colour = lanes_of_vec(vec_of(num_all(0.0f), num_all(0.0f), num_all(0.0f)));
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (chosen.lane[lane]) take_vec(&colour, lane, own_slot(f, lane)->head.carries.colour);
     }
     const index light = f->state.all >> (index)(RAYA_STATE_LIGHT_SHIFT);
-    put_return_packets(f, m, vec_of_lanes(colour), f->weight.all, light);
-    count_event(f, RAYA_LIT, m);
+    put_return_packets(f, m, vec_of_lanes(colour), f->weight.all, light, f->state.all & (index)(RAYA_STATE_CHARGED));
+}
+
+// Shadow rays that are done. One that its whole ray was waiting for makes a return though it was stopped.
+static inline void end_shadow_rays(flight* f, mask arrived, mask stopped) {
+    const mask returns = arrived | (stopped & has_flag(f, RAYA_STATE_CHARGED));
+    if (mask_any(returns)) put_light(f, returns, arrived);
+    count_event(f, RAYA_LIT, arrived);
+    count_event(f, RAYA_SHADOW_HITS, stopped);
 }
 
 // Treats the packets of the lanes m, all in the voxel `place` of this node or all outside the box.
@@ -97,10 +106,10 @@ static inline void treat(const node* n, flight* f, mask m, uint place) {
     if (mask_any(wide)) o = both(o, tour_on(n, f, voxel, wide, place, h), wide);
     move_packets(f, o.moves, o.place);
     const vec background = vec_all(((job_words)n->memory)->background);
-    if (mask_any(o.missed)) put_return_packets(f, o.missed, background, f->weight.all, (index)(0));
-    if (mask_any(o.arrived)) arrive(f, o.arrived);
+    if (mask_any(o.missed))
+        put_return_packets(f, o.missed, background, f->weight.all, (index)(0), (index)(RAYA_STATE_CHARGED));
+    end_shadow_rays(f, o.arrived, o.stopped);
     if (mask_any(o.struck)) shade_packets(n, all, f, o.struck, h);
-    count_event(f, RAYA_SHADOW_HITS, o.stopped);
     end_packets(f, o.struck | o.missed | o.stopped | o.arrived);
     if (reserved) shared_add(&f->shared[RAYA_COUNT_RESERVED], f->appended - before - reserved);
 }
@@ -142,6 +151,7 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
     f.queue = queues + (size_t)number * run->queue;
     f.capacity = run->queue;
     f.tight = tight;
+    f.charged = run->return_a_ray ? 0 : RAYA_STATE_CHARGED;
     f.shared = local_words;
     open_shared(f.shared, count);
     const node n = open_node(memories, starts, local_words + RAYA_COUNT_WORDS);

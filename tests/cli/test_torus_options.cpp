@@ -42,6 +42,8 @@ TEST_CASE("rings refuse the options of the torus, with reason and remedy", "[cli
                              {{"--voxels", "4x4x4"}, {"--voxels 4x4x4" + with, remedy}},
                              {{"--links", "torus2d"}, {"--links torus2d" + with, remedy}},
                              {{"--inject", "root"}, {"--inject root" + with, remedy}},
+                             {{"--returns", "rays"}, {"--returns rays" + with, remedy}},
+                             {{"--packet-words", "22"}, {"--packet-words 22" + with, remedy}},
                              {{"--queue", "64"}, {"--queue 64" + with, remedy}},
                              {{"--packets", "p.csv.gz"}, {"--packets p.csv.gz" + with, remedy}}});
     check_refused_on("grande", {{{"--inject", "all"}, {"--inject all with --machine grande", remedy}}});
@@ -57,6 +59,9 @@ TEST_CASE("the torus's own options are checked before anything is rendered", "[c
                                {{"--voxels", "1000000x1000000x1000000"}, {"--voxels 1000000x", "2^24"}},
                                {{"--links", "mesh"}, {"--links mesh", "torus3d", "torus2d"}},
                                {{"--inject", "some"}, {"--inject some", "root or all"}},
+                               {{"--returns", "some"}, {"--returns some", "terms or rays"}},
+                               {{"--packet-words", "15"}, {"--packet-words 15", "16..4096"}},
+                               {{"--packet-words", "4097"}, {"--packet-words 4097", "16..4096"}},
                                {{"--queue", "0"}, {"--queue 0", "1 packet"}},
                                {{"--queue", "-1"}, {"--queue -1: out of range"}},
                                {{"--queue", "x"}, {"--queue x: not a whole number"}},

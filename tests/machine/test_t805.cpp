@@ -55,6 +55,20 @@ TEST_CASE("cycles of one event on a T805, counted by hand", "[machine]") {
     CHECK(cycles[RAYA_LIT] == arithmetic(7, 15) + control(0, 2, 8));
     CHECK(cycles[RAYA_STEPS] == arithmetic(6, 2) + control(2, 4));
     CHECK(cycles[RAYA_WALKS] == arithmetic(25, 18, 3) + control(6, 4));
+    CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
+}
+
+// A packet of 30 words takes 14 more stores; a ray's one return of 6 words, two stores less, and none for a light.
+TEST_CASE("what packets are charged for is stored where they are made", "[machine]") {
+    const auto moved = t805_cycles(), charged = t805_cycles({30, true});
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+        CAPTURE(event);
+        const bool ray =
+            event == RAYA_PRIMARY || event == RAYA_REFLECTED || event == RAYA_REFRACTED || event == RAYA_SHADOW;
+        const int more = ray ? 14 * 4 : event == RAYA_SHADED ? -2 * 4 : event == RAYA_LIT ? -8 * 4 : 0;
+        CHECK(static_cast<int>(charged[event]) - static_cast<int>(moved[event]) == more);
+    }
+    CHECK(PacketCharge{}.return_words() == RAYA_RETURN_WORDS);
 }
 
 TEST_CASE("a message takes 19 cycles of the processor and 2 for each word", "[machine]") {

@@ -27,6 +27,9 @@ RenderReport report_with_figures() {
     t.voxels = {8, 4, 4};
     t.links = "torus2d";
     t.inject = "root";
+    t.packets = {24, true};
+    t.returns = 70;
+    t.discarded = 90;
     t.supersteps = 31;
     t.live_max = 900;
     for (std::uint32_t kind = 1; kind < RAYA_KINDS; ++kind) t.made[kind] = t.ended[kind] = 10 * kind;
@@ -48,6 +51,9 @@ TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
     CHECK(torus["voxels"] == Document({8, 4, 4}));
     CHECK(torus["links"] == "torus2d");
     CHECK(torus["inject"] == "root");
+    CHECK(torus["returns"] == Document::parse(R"({"of": "rays", "messages": 70})"));
+    CHECK(torus["message_words"] == Document::parse(R"({"ray": 24, "return": 6})"));
+    CHECK(torus["discarded"] == 90);
     CHECK(torus["supersteps"] == 31);
     CHECK(torus["live_max"] == 900);
     CHECK(torus["packets"] ==
@@ -77,7 +83,7 @@ TEST_CASE("a torus's budget is a T805's operations", "[report]") {
     EventCounts events{};
     events[RAYA_REFLECTED] = 3;
     events[RAYA_SPHERE_TESTS] = 2;
-    CHECK(read_back(t805_budget_json(events)) ==
+    CHECK(read_back(t805_budget_json(events, {})) ==
           Document::parse(R"({"additions": 22, "multiplications": 21, "divisions": 0, "roots": 0, "moves": 30,
               "packet_words": 48, "branches": 8})"));
 }
@@ -88,7 +94,8 @@ TEST_CASE("the summary of a torus names nodes, packets, links, memory and both b
     for (const char* part :
          {"512 x 256 pixels on torus (4x4x4 nodes, torus2d, 8x4x4 voxels), fp32",
           "packets 150 = 10 primary + 20 reflected + 30 refracted + 40 shadow + 50 return; 31 supersteps",
-          "400 packets over 256 links, 128.0 MB in all; 512.0 KB over one on average, 3.0 MB over the busiest",
+          "70 returns of rays, 24 words a ray and 6 a return; 90 primary rays thrown away",
+          "400 messages over 256 links, 128.0 MB in all; 512.0 KB over one on average, 3.0 MB over the busiest",
           "1536.0 KB in the fullest node of 4096 KB; queues of 2048 packets, at most 77 used; 5 copies of objects",
           "5.0 ms if nothing waits", "6.0 ms step by step"})
         CHECK_THAT(text, Catch::Contains(part));

@@ -23,6 +23,7 @@ struct TorusCase {
     Divisions voxels{};  // 0: one for each node
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
+    PacketCharge packets{};
     std::uint32_t queue = 0;             // 0: as many packets as there are by default
     std::uint32_t lanes = 0, group = 0;  // 0: the device's own
     std::uint32_t bounces = 4;
@@ -30,6 +31,10 @@ struct TorusCase {
     PixelSubset pixels{};
     KernelSources sources{};
 };
+
+inline PacketCharge random_charge(SplitMix& random) {
+    return {RAYA_PACKET_WORDS + random_below(random, 20), random.next() % 2 == 0};
+}
 
 inline TorusSettings settings_of(const TorusCase& c) {
     TorusSettings s;
@@ -40,6 +45,7 @@ inline TorusSettings settings_of(const TorusCase& c) {
     s.links = c.links;
     s.voxels = c.voxels[0] ? c.voxels : Divisions{c.nodes[0], c.nodes[1], c.nodes[2]};
     s.inject = c.inject;
+    s.packets = c.packets;
     s.queue = c.queue;
     s.pixels = c.pixels;
     s.bounces = c.bounces;
@@ -52,10 +58,12 @@ inline TorusSettings settings_of(const TorusCase& c) {
 
 /// One line that says all of a case, to see where a test fails.
 inline std::string case_text(const TorusCase& c) {
-    return fmt::format("{}x{} nodes {} voxels {} {} {} queue {} lanes {} group {} bounces {} {} pixels {}+{}", c.width,
-                       c.height, sides_text(c.nodes), sides_text(c.voxels), links_name(c.links),
-                       c.inject == Injection::kRoot ? "root" : "all", c.queue, c.lanes, c.group, c.bounces, c.format,
-                       c.pixels.first, c.pixels.stride);
+    return fmt::format(
+        "{}x{} nodes {} voxels {} {} {} {} words a ray, a return a {}, queue {} lanes {} group {} bounces {} {} pixels "
+        "{}+{}",
+        c.width, c.height, sides_text(c.nodes), sides_text(c.voxels), links_name(c.links),
+        c.inject == Injection::kRoot ? "root" : "all", c.packets.ray_words, c.packets.return_a_ray ? "ray" : "term",
+        c.queue, c.lanes, c.group, c.bounces, c.format, c.pixels.first, c.pixels.stride);
 }
 
 inline TorusResult render_torus(Session& session, const Scene& scene, const TorusCase& c, const PacketSink& sink = {}) {
@@ -96,7 +104,7 @@ inline void add_way(std::vector<std::uint64_t>& words, const raya_torus& torus, 
     for (std::uint32_t node = p.source; node != p.destination;) {
         const bool home = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
         const std::uint32_t link = home ? raya_home_link(torus, node) : raya_next_link(torus, node, p.destination);
-        words.at(std::size_t{node} * RAYA_LINKS + link) += raya_packet_words(p.head.state);
+        words.at(std::size_t{node} * RAYA_LINKS + link) += p.words;
         node = raya_link_end(torus, node, link);
     }
 }

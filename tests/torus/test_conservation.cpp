@@ -9,24 +9,11 @@
 #include "host/torus/packet_trace.hpp"
 #include "tests/files/gunzip.hpp"
 #include "tests/thorough.hpp"
-#include "tests/torus/render_torus.hpp"
+#include "tests/torus/recorded.hpp"
 
 namespace raya {
 namespace {
 
-struct Recorded {
-    TorusResult result;
-    std::vector<PacketRecord> records;
-};
-
-Recorded record(Session& session, const Scene& scene, const TorusCase& c) {
-    Recorded r;
-    r.result = render_torus(session, scene, c, [&](const PacketRecord& p) { r.records.push_back(p); });
-    return r;
-}
-
-std::uint32_t state_of(const PacketRecord& p) { return p.head.state; }
-std::uint32_t kind_of(const PacketRecord& p) { return raya_state_kind(state_of(p)); }
 bool is_wide(const PacketRecord& p) { return state_of(p) & RAYA_STATE_WIDE; }
 
 std::uint64_t sum(const std::vector<std::uint64_t>& values) {
@@ -47,7 +34,7 @@ std::map<RayKey, std::vector<PacketRecord>> ways_of(const std::vector<PacketReco
 }
 
 // What a packet of each kind is made for, as the events say.
-void check_kinds(const TorusResult& r, std::uint64_t pixels) {
+void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t lights, bool return_a_ray) {
     const EventCounts& e = r.events;
     CHECK(r.made == r.ended);
     CHECK(r.made[RAYA_KIND_NONE] == 0);
@@ -57,22 +44,29 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels) {
     CHECK(r.made[RAYA_KIND_REFRACTED] == e[RAYA_REFRACTED]);
     CHECK(r.made[RAYA_KIND_SHADOW] == e[RAYA_SHADOW]);
     CHECK(e[RAYA_SHADOW] == e[RAYA_SHADOW_HITS] + e[RAYA_LIT]);
-    // An ambient term or the background from every ray, and what lights add.
-    CHECK(r.made[RAYA_KIND_RETURN] == pixels + e[RAYA_REFLECTED] + e[RAYA_REFRACTED] + e[RAYA_LIT]);
+    // An ambient term or the background from every ray, and what lights add. Where a return is a ray's, shadow rays
+    // that were stopped last make one, too: of one light all.
+    const std::uint64_t rays = pixels + e[RAYA_REFLECTED] + e[RAYA_REFRACTED], terms = rays + e[RAYA_LIT];
+    const std::uint64_t stopped = return_a_ray ? e[RAYA_SHADOW_HITS] : 0;
+    CHECK(r.returns == (return_a_ray ? rays : terms));
+    CHECK(r.made[RAYA_KIND_RETURN] >= terms + (lights > 1 ? 0 : stopped));
+    CHECK(r.made[RAYA_KIND_RETURN] <= terms + stopped);
 }
 
 // The way of each record is the torus's distance, whatever waits on it.
 void check_traffic(const Recorded& r, const TorusSettings& s) {
     std::uint64_t hops = 0;
     std::vector<std::uint64_t> words(r.result.link_words.size());
-    std::size_t at_home = 0;
+    std::size_t at_home = 0, wrong_words = 0;
     for (const PacketRecord& p : r.records) {
         const std::uint64_t distance = raya_node_distance(s.torus, p.source, p.destination);
         at_home += distance == 0;
         hops += distance;
         add_way(words, s.torus, p);
+        wrong_words += p.words != (kind_of(p) == RAYA_KIND_RETURN ? s.packets.return_words() : s.packets.ray_words);
     }
     CHECK(at_home == 0);
+    CHECK(wrong_words == 0);
     CHECK(r.result.hops == hops);
     CHECK(sum(r.result.link_packets) == hops);
     CHECK(r.result.link_words == words);
@@ -201,6 +195,7 @@ TEST_CASE("the traffic of random machines adds up", "[torus]") {
         for (std::uint32_t& side : c.nodes) side = 1 + random_below(random, 4);
         c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
         c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
+        c.packets = random_charge(random);
         const bool one_each = i % 4 > 0 || i % 8 == 0;
         if (!one_each)
             for (std::size_t axis = 0; axis < 3; ++axis) c.voxels[axis] = 1 + random_below(random, 7);
@@ -208,7 +203,7 @@ TEST_CASE("the traffic of random machines adds up", "[torus]") {
         CAPTURE(seed, i, case_text(c));
         const TorusSettings s = settings_of(c);
         const Recorded r = record(session, scene, c);
-        check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1);
+        check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1, lights_of(scene), c.packets.return_a_ray);
         check_traffic(r, s);
         check_returns(r);
         if (!one_each) continue;

@@ -52,6 +52,15 @@ const Fault kFaults[] = {
      {"torus/shade_packets.clh", "f->path.all | (index)(0x80000000u) >> levels_of(f);", "f->path.all;"}},
     {"a light's number is one off",
      {"torus/shade_packets.clh", "shadow.light = (index)(l + 1);", "shadow.light = (index)(l);"}},
+    {"rays that are thrown away are not counted", {"torus/inject.cl", "number += !own.lane[lane];", "number += 0;"}},
+    {"a ray's return leaves before its shadow rays",
+     {"torus/shade_packets.clh", "put_shadow_rays(n, f, struck, &lit);\n    if (!f->charged) charge_newest(f, struck);",
+      "if (!f->charged) charge_newest(f, struck);\n    put_shadow_rays(n, f, struck, &lit);"}},
+    {"a shadow ray that is stopped makes no return",
+     {"torus/trace_voxel.cl", "arrived | (stopped & has_flag(f, RAYA_STATE_CHARGED))", "arrived"}},
+    {"every return on its way is a message",
+     {"torus/accept.cl", "if (packet.state & RAYA_STATE_CHARGED) shared_add", "shared_add"}},
+    {"every return from a queue is a message", {"torus/route.cl", "packet.head.state & RAYA_STATE_CHARGED", "1"}},
     {"no room is reserved",
      {"torus/trace_voxel.cl", "if (*all + need > f->capacity) continue;", "chosen.lane[lane] = RAYA_TRUE; continue;"}},
 };
@@ -59,6 +68,7 @@ const Fault kFaults[] = {
 struct Traffic {
     std::string image;
     PacketCounts made{};
+    std::uint64_t discarded = 0;
     std::vector<std::uint64_t> words, expected;  // over each link
     bool operator==(const Traffic&) const = default;
 };
@@ -78,6 +88,7 @@ Traffic traffic_of(Session& session, const Scene& scene, const TorusCase& c) {
             .render([&](double) { stop_long(calls); }, [&](const PacketRecord& p) { add_way(t.expected, s.torus, p); });
     t.image = one_image(r);
     t.made = r.made;
+    t.discarded = r.events[RAYA_DISCARDED];
     t.words = r.link_words;
     return t;
 }
@@ -107,6 +118,7 @@ TEST_CASE("kernels with a fault are found out", "[torus][.][faults]") {
     walks.queue = raya_shortest_queue(lights_of(random_view_scene(kRichScenes[1])), walks.bounces) + 30;
     TorusCase tours{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     tours.format = "spa22";
+    tours.packets = {22, true};
     const Trial trials[] = {{random_view_scene(kRichScenes[1]), walks},
                             {far_mirror_scene(kRichScenes[3], "spa22"), tours}};
     std::vector<Traffic> right;

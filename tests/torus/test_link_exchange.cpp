@@ -210,6 +210,26 @@ TEST_CASE("a long box and short ones are copied apart where that moves fewer byt
     }
 }
 
+TEST_CASE("links charge for messages, whatever packets they move", "[torus]") {
+    Session session(choose_device(""));
+    const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
+    LinkExchange links(session, torus, 8,
+                       {"test", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX, 6,
+                        RAYA_STATUS_RETURN_CHARGED});
+    links.clear();
+    NodeStatus status(2);
+    status.words[RAYA_STATUS_WORDS + RAYA_STATUS_RETURN_OUTBOX + 1] = 5;
+    status.words[RAYA_STATUS_WORDS + RAYA_STATUS_RETURN_CHARGED] = 3;
+    std::vector<std::uint64_t> words(std::size_t{2} * RAYA_LINKS), expected = words;
+    expected[RAYA_LINKS + 1] = 3 * 6;
+    links.exchange(status, words);
+    CHECK(words == expected);
+    CHECK(links.packets()[RAYA_LINKS + 1] == 3);
+    CHECK(links.moved() == 5);
+    links.clear();
+    CHECK(links.moved() == 0);
+}
+
 TEST_CASE("links have the names of their sides", "[torus]") {
     const char* const names[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) CHECK(link_name(link) == names[link]);

@@ -34,6 +34,7 @@ TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
                                     : 1 + random_below(random, 9);
     c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
+    c.packets = random_charge(random);
     const std::uint32_t shortest = raya_shortest_queue(lights_of(scene), c.bounces);
     const std::uint32_t queues[] = {shortest, shortest + random_below(random, 20), 3 * shortest, 20 * shortest, 0};
     c.queue = queues[random_below(random, 5)];
@@ -141,6 +142,7 @@ TEST_CASE("lanes and group size change no bit of the torus's image and no packet
                 const TorusResult& before = first.try_emplace({row.format, inject}, r).first->second;
                 CHECK(r.made == before.made);
                 CHECK(r.ended == before.ended);
+                CHECK(r.events[RAYA_DISCARDED] == before.events[RAYA_DISCARDED]);
                 CHECK(r.link_packets == before.link_packets);
                 CHECK(r.link_words == before.link_words);
             }

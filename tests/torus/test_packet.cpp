@@ -101,7 +101,7 @@ TEST_CASE("the path has a bit for each level, the first level's highest", "[toru
 }
 
 TEST_CASE("the state of a packet keeps kind, level and light apart, and leaves room for the flags", "[torus]") {
-    const std::uint32_t flags = RAYA_STATE_WIDE | RAYA_STATE_FOUND | RAYA_STATE_FRESH;
+    const std::uint32_t flags = RAYA_STATE_WIDE | RAYA_STATE_FOUND | RAYA_STATE_FRESH | RAYA_STATE_CHARGED;
     for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
         SplitMix random(seed);
         const std::uint32_t kind = random_below(random, RAYA_KINDS), level = random_below(random, kLastLevel + 1);

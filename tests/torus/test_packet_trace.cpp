@@ -57,20 +57,21 @@ class Tree {
     std::uint32_t below(std::uint32_t limit) { return static_cast<std::uint32_t>(random_.next() % limit); }
 
   private:
-    // RAYA_STATE_WIDE, _FOUND and _FRESH say how a ray travels, not which it is.
-    std::uint32_t flags() { return below(8) * RAYA_STATE_WIDE; }
+    // RAYA_STATE_WIDE, _FOUND, _FRESH and _CHARGED say how a ray travels, not which it is.
+    std::uint32_t flags() { return below(16) * RAYA_STATE_WIDE; }
 
     void send(std::uint32_t pixel, std::uint32_t path, std::uint32_t state, const std::string& name,
               const std::string& parent, std::uint32_t times) {
         static const char* const kKinds[] = {"", "primary", "reflected", "refracted", "shadow", "return"};
         for (std::uint32_t i = 0; i < times; ++i) {
-            PacketRecord record = {below(1000), below(65'536), below(65'536), {}};
+            PacketRecord record = {below(1000), below(65'536), below(65'536), {}, 0};
             record.head = {.pixel = pixel,
                            .state = state,
                            .path = path,
                            .weight = static_cast<float>(below(1u << 31)),
                            .carries = {.nearest = {below(1u << 31), below(1u << 31)}},
                            .voxel = below(1u << 31)};
+            record.words = 6 + below(60);
             sent_.push_back({record, kKinds[raya_state_kind(state)], name, parent});
         }
     }
@@ -94,7 +95,7 @@ std::string expected_rows(const std::vector<Sent>& sent) {
     std::string rows;
     for (const Sent& s : sent) {
         rows += fmt::format("{},{},{},{},{},{},", s.record.superstep, s.record.source, s.record.destination, s.kind,
-                            s.kind == "return" ? 32 : 64, number(s.name));
+                            4 * s.record.words, number(s.name));
         if (!s.parent.empty()) rows += std::to_string(number(s.parent));
         rows += "\n";
     }
@@ -123,7 +124,7 @@ TEST_CASE("rays and parents of random ray trees have the numbers of their names"
 TEST_CASE("a shadow ray's return before anything else, by hand", "[torus]") {
     PacketTrace trace;
     const auto row = [&](std::uint32_t kind, std::uint32_t level, std::uint32_t light, std::uint32_t path) {
-        trace.add({3, 1, 2, head_of(9, raya_state(kind, level, light), path)});
+        trace.add({3, 1, 2, head_of(9, raya_state(kind, level, light), path), kind == RAYA_KIND_RETURN ? 6u : 22u});
     };
     row(RAYA_KIND_RETURN, 1, 4, 1u << 31);     // of the refracted ray's shadow ray
     row(RAYA_KIND_SHADOW, 1, 4, 1u << 31);     // which is 1, and shades 2
@@ -131,8 +132,8 @@ TEST_CASE("a shadow ray's return before anything else, by hand", "[torus]") {
     row(RAYA_KIND_PRIMARY, 0, 0, 0);
     row(RAYA_KIND_REFLECTED, 1, 0, 0);
     CHECK(gunzip(trace.finish()) == kHeading +
-                                        "3,1,2,return,32,0,1\n3,1,2,shadow,64,1,2\n3,1,2,refracted,64,2,3\n"
-                                        "3,1,2,primary,64,3,\n3,1,2,reflected,64,4,3\n");
+                                        "3,1,2,return,24,0,1\n3,1,2,shadow,88,1,2\n3,1,2,refracted,88,2,3\n"
+                                        "3,1,2,primary,88,3,\n3,1,2,reflected,88,4,3\n");
 }
 
 TEST_CASE("a trace without packets is its heading", "[torus]") {
@@ -149,7 +150,7 @@ TEST_CASE("a head that no packet has is refused", "[torus]") {
     for (const std::uint32_t state : wrong) {
         CAPTURE(state);
         PacketTrace trace;
-        CHECK_THROWS_AS(trace.add({0, 0, 0, head_of(0, state, 0)}), std::logic_error);
+        CHECK_THROWS_AS(trace.add({0, 0, 0, head_of(0, state, 0), 16}), std::logic_error);
     }
     CHECK_THROWS_AS(packet_kind_name(RAYA_KINDS), std::logic_error);
 }

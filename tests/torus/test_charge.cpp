@@ -1,0 +1,107 @@
+// What the model charges beside what the device moves: rays made and thrown away, and one return for a whole ray.
+#include <catch2/catch.hpp>
+#include <map>
+#include <tuple>
+
+#include "host/torus/torus_plan.hpp"
+#include "host/torus/windows.hpp"
+#include "tests/thorough.hpp"
+#include "tests/torus/recorded.hpp"
+
+namespace raya {
+namespace {
+
+// Each node makes every ray of its window, and those of its rows, all rows once, for what misses the box. What it does
+// not keep was made for nothing: as many as the windows hold.
+std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
+    const PackedJob job = pack_job(scene, job_settings(s, length_scale(scene, s.format)));
+    std::uint64_t pixels = 0;
+    for (const PixelWindow& w : pixel_windows(job.header(), partition(job, s.format, s.voxels).grid, s.torus, s.format))
+        for (std::uint32_t row = w.rows[0]; row < w.rows[1]; ++row)
+            for (std::uint32_t column = w.columns[0]; column < w.columns[1]; ++column)
+                pixels += (row * s.width + column) % s.pixels.stride == s.pixels.first;
+    return pixels;
+}
+
+using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // pixel, path, level
+RayKey key_of(const PacketRecord& p) { return {p.head.pixel, p.head.path, raya_state_level(state_of(p))}; }
+
+// The return of a whole ray leaves with the shadow ray to the last light that the surface faces, from where that ends.
+void check_last_lights(const Recorded& r) {
+    std::map<RayKey, PacketRecord> last;  // of each ray: the last record of its last shadow ray
+    for (const PacketRecord& p : r.records) {
+        if (kind_of(p) != RAYA_KIND_SHADOW) continue;
+        PacketRecord& known = last.emplace(key_of(p), p).first->second;
+        if (raya_state_light(state_of(p)) >= raya_state_light(state_of(known))) known = p;
+    }
+    std::size_t early = 0, elsewhere = 0, doubled = 0;
+    std::map<RayKey, int> returns;
+    for (const PacketRecord& p : r.records) {
+        if (kind_of(p) != RAYA_KIND_RETURN) continue;
+        doubled += ++returns[key_of(p)] > 1;
+        const auto shadow = last.find(key_of(p));
+        if (shadow == last.end()) continue;
+        const std::uint32_t light = raya_state_light(state_of(shadow->second));
+        early += raya_state_light(state_of(p)) < light;
+        elsewhere += raya_state_light(state_of(p)) == light && p.source != shadow->second.destination;
+    }
+    CHECK(early == 0);
+    CHECK(elsewhere == 0);
+    CHECK(doubled == 0);
+}
+
+}  // namespace
+
+TEST_CASE("rays that nodes throw away are those of their windows, and the root throws none away", "[torus]") {
+    const std::uint64_t seed = 662;
+    SplitMix random(seed);
+    Session session(choose_device(""));
+    std::uint64_t discarded = 0;
+    for (unsigned i = 0; i < quick_cases(8, 40); ++i) {
+        const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
+        TorusCase c{.width = 1 + random_below(random, 30), .height = 1 + random_below(random, 30), .bounces = 0};
+        c.lanes = i % 2 ? 4 : 1;
+        c.group = 1 + i % 3;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            c.nodes[axis] = 1 + random_below(random, 3);
+            c.voxels[axis] = 1 + random_below(random, 7);
+        }
+        c.pixels.stride = 1 + random_below(random, 3);
+        c.pixels.first = random_below(random, c.pixels.stride);
+        c.inject = i % 4 == 3 ? Injection::kRoot : Injection::kAll;
+        if (i % 3 == 0) c.queue = 20 * raya_shortest_queue(lights_of(scene), c.bounces);
+        CAPTURE(seed, i, case_text(c));
+        const TorusSettings s = settings_of(c);
+        const EventCounts e = render_torus(session, scene, c).events;
+        const bool by_root = c.inject == Injection::kRoot || raya_nodes(s.torus) == 1;
+        CHECK(e[RAYA_DISCARDED] == (by_root ? 0 : pixels_of_windows(scene, s)));
+        discarded += e[RAYA_DISCARDED];
+    }
+    CHECK(discarded > 1000);
+}
+
+TEST_CASE("one return for each ray leaves where its last shadow ray ends", "[torus]") {
+    const std::uint64_t seed = 81;
+    SplitMix random(seed);
+    Session session(choose_device(""));
+    std::uint64_t late = 0;
+    for (unsigned i = 0; i < quick_cases(6, 30); ++i) {
+        const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
+        TorusCase c{.width = 16, .height = 12, .nodes = {3, 2, 2}, .group = 1 + i % 2};
+        c.packets = {22, true};
+        if (i % 2) c.queue = 6 * raya_shortest_queue(lights_of(scene), c.bounces);
+        CAPTURE(seed, i, case_text(c));
+        const Recorded r = record(session, scene, c);
+        check_last_lights(r);
+        TorusCase terms = c;
+        terms.packets = {};
+        const TorusResult each = render_torus(session, scene, terms);
+        CHECK(one_image(r.result) == one_image(each));
+        CHECK(r.result.returns < each.returns);
+        CHECK(r.result.contributions >= each.contributions);
+        late += r.result.contributions - each.contributions;
+    }
+    CHECK(late > 100);  // rays whose last shadow ray was stopped
+}
+
+}  // namespace raya
