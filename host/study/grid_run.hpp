@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "host/cl/commands.hpp"
 #include "host/accel/partition.hpp"
+#include "host/cl/commands.hpp"
 #include "host/machine/machine.hpp"
 #include "host/report/render_report.hpp"
 #include "host/scene/packer.hpp"
@@ -17,7 +17,7 @@ struct GridSettings {
     std::uint32_t side = 0;  // of the image, pixels
     std::uint32_t bounces = 0;
     Sampling sampling = Sampling::kCentres;
-    int runs = 1;  // renders that are timed
+    int runs = 1;  // samples that are timed, each of renders that take 20 ms together
 };
 
 /// Modelled milliseconds that one T805 computes for these events, and no message (machine/t805.hpp).
@@ -30,7 +30,8 @@ struct GridRun {
     Divisions divisions{};      // of the box of its finite objects
     std::uint64_t copies = 0;   // entries of the voxels' lists beyond each object's first
     EventCounts events{};       // of one image
-    double measured_ms = 0;     // least time of tracing one image on the device
+    double measured_ms = 0;     // least time of tracing one image on the device, after a warm-up
+    double median_ms = 0;       // ... and the median
 
     std::uint64_t voxels() const { return std::uint64_t{divisions[0]} * divisions[1] * divisions[2]; }
     std::string sides() const;  // "4x4x2"

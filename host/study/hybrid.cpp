@@ -31,6 +31,7 @@ struct Row {
     double messages_ms = 0;                     // of the processor that has most of them
     double hops_per_packet = 0, tests_per_ray = 0;
     std::uint64_t supersteps = 0;        // of the group that takes most
+    std::uint64_t discarded = 0;         // primary rays that were made and thrown away, of all groups
     std::uint64_t words_bytes = 0;       // of the fullest node: its part of the scene
     std::uint64_t least_bytes = 0;       // ... and the shortest queue and boxes with which it can work
     std::uint64_t with_queue_bytes = 0;  // ... and those that it had here
@@ -70,6 +71,7 @@ Row row_of(const std::vector<TorusRun>& runs, const LabelledScene& scene, std::u
         row.messages_ms = std::max(row.messages_ms, run.time.messages_ms);
         row.supersteps = std::max<std::uint64_t>(row.supersteps, run.result.supersteps.size());
         loads.insert(loads.end(), run.result.load.per_pe.begin(), run.result.load.per_pe.end());
+        row.discarded += run.discarded();
         hops += run.result.hops;
         packets += run.packets();
         tests += run.tests();
@@ -88,7 +90,8 @@ Rows rows_of(Session& session, const LabelledScene& scene, std::uint32_t size, s
         const TorusPlan plan{.nodes = near_cube(nodes / groups), .voxels = {sides, sides, sides}};
         rows.push_back(row_of(run_groups(session, scene, size, plan, groups), scene, sides));
     }
-    // With a node a group none sends a message, and what they compute together is what one node alone would compute.
+    // With a node a group none sends a message or throws a ray away, and what they compute together is what one node
+    // alone would compute.
     const std::vector<std::uint64_t>& alone = rows.back().load.per_pe;
     const auto cycles = std::accumulate(alone.begin(), alone.end(), std::uint64_t{0});
     for (Row& row : rows) row.one_node_ms = 1e-6 * kT805CycleNs * static_cast<double>(cycles);
@@ -109,7 +112,8 @@ std::vector<StudyTable> tables_of(const Rows& rows) {
                       {"most messages", &Row::messages_ms, "ms"},
                       {"hops a packet", &Row::hops_per_packet},
                       {"supersteps", &Row::supersteps},
-                      {"tests a ray", &Row::tests_per_ray}}),
+                      {"tests a ray", &Row::tests_per_ray},
+                      {"rays thrown away", &Row::discarded}}),
             table_of("hybrid-memory", "Memory of the fullest node", rows,
                      {{"scene", &Row::scene},
                       {"voxels", &Row::voxels},
@@ -199,6 +203,8 @@ StudyPage hybrid_page(Session& session, const Scenes& scenes, std::uint32_t size
         page.comparisons.push_back({fmt::format("best G, {}, {} voxels", some[0].scene, some[0].voxels), "groups",
                                     std::nullopt, double(least(some, &Row::overlapped_ms).groups),
                                     "modelled, overlapped, whatever the memory"});
+    page.clock = sentence("torus", "clock");
+    page.news = {sentence("hybrid", "news")};
     page.findings = findings_of(all);
     page.tables = tables_of(rows);
     page.plots = plots_of(rows);

@@ -1,4 +1,5 @@
-// The root makes all primary rays, as in the paper, or all nodes do: from how many nodes on does the root hold them up?
+// The root makes all primary rays, as Yoshitani & Yamazaki have it, or all nodes do: from how many nodes on does the
+// root hold them up?
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
@@ -45,6 +46,7 @@ StudyTable table_of_rows(const Rows& rows) {
                      {"root / overlapped", &Row::root_share, "%"},
                      {"busiest link", &Row::busiest_link_bytes, "bytes"},
                      {"packets", &Row::packets},
+                     {"rays thrown away", &Row::discarded},
                      {"hops a packet", &Row::hops_per_packet},
                      {"most packets in a queue", &Row::queue_max}});
 }
@@ -99,6 +101,14 @@ std::string finding_of_parting(const Rows& root, const Rows& all) {
                        all[parted].nodes(), ratio(parted), last);
 }
 
+std::string finding_of_making(const Row& all) {
+    const auto rays = static_cast<double>(all.result.events[RAYA_PRIMARY]);
+    return fmt::format(
+        "{} nodes that make their own primary rays make {:.1f} for each that they keep, all of which they are charged "
+        "for: the other rays of their windows enter elsewhere.",
+        all.nodes(), 1 + static_cast<double>(all.discarded()) / rays);
+}
+
 std::string finding_of_supersteps(const Row& root, const Row& all) {
     return fmt::format(
         "Stepwise the root's way takes {:.2f} times as long with {} nodes, in {} supersteps against {}: the root makes "
@@ -121,7 +131,9 @@ StudyPage inject_page(Session& session, const LabelledScene& scene, std::uint32_
             page.comparisons.push_back({fmt::format("root's share of the time, {} nodes, {}", row.nodes(), row.way),
                                         "%", std::nullopt, row.root_share(), "modelled, overlapped"});
     page.findings = {finding_of_root(root, all), finding_of_limit(root, all), finding_of_parting(root, all),
-                     finding_of_supersteps(root.back(), all.back())};
+                     finding_of_supersteps(root.back(), all.back()), finding_of_making(all.back())};
+    page.clock = sentence("torus", "clock");
+    page.news = {sentence("inject", "news")};
     page.tables = {table_of_rows(rows)};
     page.plots = plots_of(rows);
     return page;

@@ -23,6 +23,9 @@ struct Row : TorusRun {
     double stepwise() const { return one.stepwise_ms / stepwise_ms(); }
     double efficiency() const { return overlapped() / nodes(); }
     double balance() const { return result.load.efficiency; }
+    double per_pixel(std::uint64_t count) const {
+        return static_cast<double>(count) / static_cast<double>(result.events[RAYA_PRIMARY]);
+    }
 
     const char* waits_for() const {
         if (root_link_ms >= overlapped_ms()) return "the root's link";
@@ -82,6 +85,7 @@ StudyTable table_of_machines(const Series& all) {
                      {"busiest link", &Row::busiest_link_bytes, "bytes"},
                      {"tests a ray", &Row::tests_per_ray},
                      {"steps a ray", &Row::steps_per_ray},
+                     {"rays thrown away", &Row::discarded},
                      {"waits for", &Row::waits_for}});
 }
 
@@ -166,6 +170,17 @@ std::string finding_of_balance(const Series& one, const Series& fixed) {
         fixed.back().nodes(), fixed.back().imbalance());
 }
 
+std::string finding_of_making(const Series& one, const Series& fixed) {
+    const auto text = [](const Series& s) {
+        const Row& last = s.back();
+        return fmt::format("{:.1f} primary rays for each that is kept on {} nodes, {}",
+                           1 + last.per_pixel(last.discarded()), last.nodes(),
+                           last.fixed ? last.voxels() + " voxels laid out cyclically" : "a voxel each");
+    };
+    return fmt::format("{}, where all nodes make primary rays, they make {}; {}. What is thrown away is charged.",
+                       one.front().scene, text(one), text(fixed));
+}
+
 }  // namespace
 
 StudyPage nodes_page(Session& session, const Scenes& scenes, const NodesSettings& settings) {
@@ -186,12 +201,15 @@ StudyPage nodes_page(Session& session, const Scenes& scenes, const NodesSettings
             const Row& best = least(s, &Row::overlapped_ms);
             page.comparisons.push_back(
                 {fmt::format("{}, {}: best speed-up", best.scene, best.voxels()), "", std::nullopt, best.overlapped(),
-                 fmt::format("modelled, overlapped, {} nodes; the paper measured none", best.nodes())});
+                 fmt::format("modelled, overlapped, {} nodes; Yoshitani & Yamazaki measured none", best.nodes())});
         }
-        page.findings.insert(page.findings.end(), {finding_of_speedup(fixed), finding_of_voxels(three, fixed),
-                                                   finding_of_links(three, two), finding_of_balance(three, fixed)});
+        page.findings.insert(page.findings.end(),
+                             {finding_of_speedup(fixed), finding_of_voxels(three, fixed), finding_of_links(three, two),
+                              finding_of_balance(three, fixed), finding_of_making(three, fixed)});
         for (const Series& s : {three, two, fixed}) machines.insert(machines.end(), s.begin(), s.end());
     }
+    page.clock = sentence("torus", "clock");
+    page.news = {sentence("nodes", "news")};
     page.tables = {table_of_machines(machines)};
     page.plots = plots_of(all);
     return page;

@@ -5,7 +5,7 @@
 namespace raya {
 
 std::span<const Reference> references() {
-    static const std::array<Reference, 11> all = {{
+    static const std::array<Reference, 12> all = {{
         {"Abramowitz & Stegun",
          "Milton Abramowitz, Irene A. Stegun (eds.): Handbook of Mathematical Functions. National Bureau of Standards, "
          "Applied Mathematics Series 55, 1964."},
@@ -26,6 +26,7 @@ std::span<const Reference> references() {
         {"Heirich",
          "Alan Heirich, James Arvo: A Competitive Analysis of Load Balancing Strategies for Parallel Ray Tracing. The "
          "Journal of Supercomputing 12, pp. 57-68, 1998."},
+        {"IMS T805", "SGS-Thomson Microelectronics: IMS T805, 32-bit floating-point transputer. Data sheet, 1996."},
         {"Kohata & Ito",
          "Kohata, Ito: ray tracing on the SPA, an array of 256 digital signal processors on a ring and a bus. IPSJ "
          "Journal (Information Processing Society of Japan), 1993, in Japanese."},

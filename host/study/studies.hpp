@@ -70,8 +70,9 @@ StudyPage accel_page(const AccelSettings& settings, const AccelRuns& all);
 // The torus machine: Yoshitani & Yamazaki, and beyond.
 StudyFunction study_objects, study_nodes, study_inject, study_hybrid;
 
-/// For numbers of objects, ascending, and so many random scenes of each.
-StudyPage objects_page(Session& session, const std::vector<int>& counts, std::uint32_t size, int seeds);
+/// Fig. 4 of images of `size` x `size`, from run_objects() (objects_runs.hpp).
+struct ObjectsRuns;
+StudyPage objects_page(const ObjectsRuns& all, std::uint32_t size);
 
 struct NodesSettings {
     std::uint32_t size = 64;    // pixels a side

@@ -58,8 +58,14 @@ TEST_CASE("divisions tells where the least lies beside the paper's objects", "[s
                "Fewest tests: at divisions 64 for 64 objects, 256 for 256 objects, 1024 for 512 objects, 8192 for 1024 "
                "objects; divisions = objects is it for 2 of 4; 1 at the last division tried, so it may lie beyond."));
     CHECK(says(page, "and 1.00, 1.00, 1.10, 1.30 times the fewest tests; an object then lies in 1.00, 1.00,"));
+    CHECK(page.claims[0].verdict == ClaimVerdict::kNotReproduced);
+    CHECK(page.claims[4].verdict == ClaimVerdict::kNotReproduced);
+    for (const StudyPlot& plot : page.plots)  // a paper's times of its own machine have no place beside a model's
+        CHECK(std::ranges::count(plot.series, PlotStyle::kPaper, &PlotSeries::style) == 0);
     const StudyPage all_equal = divisions_page(96, made_up_paper({6, 8, 9, 10}), true);
     CHECK(says(all_equal, "divisions = objects is it for 4 of 4."));
+    CHECK(all_equal.claims[0].verdict == ClaimVerdict::kReproduced);
+    CHECK(all_equal.claims[4].verdict == ClaimVerdict::kReproduced);
     CHECK(says(all_equal, "Divisions = objects takes 1.00 (64 objects), 1.00 (256"));
 }
 
@@ -80,7 +86,16 @@ TEST_CASE("divisions' falls are figures at 32 over those at 1024", "[study]") {
         };
         check("modelled time", modelled_s(few) / modelled_s(many), 313.0 / 60);
         check("measured time", few.measured_ms / many.measured_ms, 313.0 / 60);
-        check("tests", double(few.events[RAYA_SPHERE_TESTS]) / double(many.events[RAYA_SPHERE_TESTS]), 5);
+        const double tests = double(few.events[RAYA_SPHERE_TESTS]) / double(many.events[RAYA_SPHERE_TESTS]);
+        check("tests", tests, 5);
+        CHECK(page.comparison(what + "modelled time").source == Source::kDerived);
+        CHECK(page.comparison(what + "tests").source == Source::kPrinted);
+        const auto near = [](double fall) { return fall >= 313 / 60.0 / 1.25 && fall <= 313 / 60.0 * 1.25; };
+        const bool modelled = near(modelled_s(few) / modelled_s(many)),
+                   measured = near(few.measured_ms / many.measured_ms);
+        CHECK((page.claims[2].verdict == ClaimVerdict::kReproduced) == (modelled && measured));
+        CHECK((page.claims[2].verdict == ClaimVerdict::kCannotTell) == (modelled != measured));
+        CHECK((page.claims[3].verdict == ClaimVerdict::kReproduced) == (tests >= 4 && tests <= 6));
         CHECK(page.value("divisions", 5, "tests") == double(few.events[RAYA_SPHERE_TESTS]));
         CHECK(page.value("divisions", 5, "modelled") == Approx(modelled_s(few)).epsilon(1e-12));
     }
@@ -92,6 +107,7 @@ TEST_CASE("one voxel tests every object for every ray, and finer ones fewer", "[
     const StudyPage page = study_divisions(lab, {{"even", generate_uniform(64, {4, 4, 4})}});
     check_page(page);
     for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);
+    CHECK(page.claims.empty());
     REQUIRE(page.table("divisions").rows.size() == 14);
     const auto at = [&](std::size_t row, const char* label) { return page.value("divisions", row, label); };
     const double rays = at(0, "rays");

@@ -1,6 +1,8 @@
 // The studies of the torus machine on small machines: shapes of their pages, and what must hold between their figures.
 #include "host/cl/device.hpp"
 #include "host/scene/generate.hpp"
+#include "host/study/objects_runs.hpp"
+#include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
 #include "host/study/torus_runs.hpp"
 #include "tests/study/study_cases.hpp"
@@ -33,6 +35,7 @@ TEST_CASE("nodes: one node is the measure, and the same voxels make the same wor
         CHECK(nodes == 1 << i % 4);
         CHECK(at(i, "efficiency, overlapped") == Approx(speedup / nodes).epsilon(1e-12));
         CHECK(speedup == at(first, "overlapped") / at(i, "overlapped"));
+        CHECK((at(i, "rays thrown away") == 0) == (nodes == 1));
         if (nodes == 1) {
             for (const char* one : {"speed-up, overlapped", "speed-up, stepwise"}) CHECK(at(i, one) == 1);
             for (const char* zero : {"hops a packet", "u", "busiest link"}) CHECK(at(i, zero) == 0);
@@ -67,6 +70,7 @@ TEST_CASE("inject: both ways make the same packets, and the root has its share",
         check_bounds(table, i);
         CHECK(table.at(i, "inject").text() == (i % 2 ? "all" : "root"));
         CHECK(at(i, "packets") == at(0, "packets"));
+        CHECK((at(i, "rays thrown away") == 0) == (i % 2 == 0 || at(i, "nodes") == 1));
         const double share = at(i, "root / overlapped");
         CHECK((share > 0 && share <= 100));
         const double root = std::max(at(i, "the root's processor"), at(i, "the root's busiest link"));
@@ -99,28 +103,37 @@ TEST_CASE("hybrid: as many groups as nodes send nothing and hold everything", "[
         if (i % 3 > 0) continue;
         // One node a group: nothing is sent, balance alone is lost, and the whole scene lies in every node.
         CHECK(at(i + 2, "hops a packet") == 0);
+        CHECK(at(i + 2, "rays thrown away") == 0);
+        CHECK(at(i, "rays thrown away") > 0);
         CHECK(at(i + 2, "most messages") == 0);
         CHECK(at(i + 2, "speed-up, overlapped") == Approx(4 / (1 + at(i + 2, "u over all nodes"))).epsilon(1e-12));
         CHECK(bytes(i + 2, "its part of the scene") > bytes(i, "its part of the scene"));
     }
 }
 
-TEST_CASE("objects: copies, tests and the rays that end in the first voxel", "[study]") {
+TEST_CASE("objects: copies, tests, returns and the rays that end in the first voxel", "[study]") {
     Session session(choose_device(""));
-    const StudyPage page = objects_page(session, {192}, kSize, 1);
+    const StudyPage page = objects_page(run_objects(session, {64, 192}, kSize, 2), kSize);
     check_page(page);
-    const auto at = [&](std::size_t row, const char* label) { return page.value("objects", row, label); };
+    const StudyTable& table = page.table("objects");
+    const auto at = [&](std::size_t row, const char* label) { return table.at(row, label).number(); };
     const auto primary = [&](std::size_t row, const char* label) { return page.value("objects-primary", row, label); };
-    REQUIRE(page.table("objects").rows.size() == 3);
-    REQUIRE(page.table("objects-primary").rows.size() == 2);
-    for (std::size_t i = 0; i < 3; ++i) {
+    REQUIRE(table.rows.size() == 2 * 2 * 3);
+    REQUIRE(page.table("objects-primary").rows.size() == 2 * 2);
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
         CAPTURE(i);
-        check_bounds(page.table("objects"), i);
-        CHECK(at(i, "objects a voxel") == at(i, "objects") / 64);
+        const bool paper = table.at(i, "protocol").text() == kProtocolOfPaper.name;
+        check_bounds(table, i);
+        CHECK(paper == (i / 3 % 2 == 0));
         CHECK(at(i, "busiest node computes") <= at(i, "overlapped"));
+        CHECK(at(i, "scenes") == (i % 3 ? 2 : 1));
+        CHECK((table.at(i, "overlapped +-") == Cell("-")) == (i % 3 == 0));
+        // A return for each ray, and none of them made twice; or one for each term.
+        CHECK((at(i, "returns") == kSize * kSize) == paper);
+        CHECK((at(i, "rays thrown away") == 0) == paper);
     }
-    CHECK(at(1, "copies") > at(2, "copies"));
-    for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(at(10, "copies") > at(11, "copies"));
+    for (std::size_t i = 0; i < 4; ++i) {
         for (const char* share : {"hit", "end in the first voxel"}) {
             CHECK(primary(i, share) > 0);
             CHECK(primary(i, share) < 100);
@@ -129,6 +142,74 @@ TEST_CASE("objects: copies, tests and the rays that end in the first voxel", "[s
         // A ray that does not end in its first voxel enters a second one.
         CHECK(primary(i, "voxels a ray in the box") >= 2 - primary(i, "end in the first voxel") / 100 - 1e-12);
     }
+    const StudyTable& growth = page.table("objects-growth");
+    REQUIRE(growth.rows.size() == 2 * 2);
+    const auto grown = [&](std::size_t row, const char* label) { return growth.at(row, label).number(); };
+    for (const std::size_t even : {0, 2})  // of one scene each: the factors are the whole
+        CHECK(grown(even, "objects / time") ==
+              Approx(grown(even, "fewer voxels a ray") * grown(even, "tests a voxel grow less") *
+                     grown(even, "fixed costs") * grown(even, "one node's bound"))
+                  .epsilon(1e-12));
+    for (std::size_t i = 0; i < 4; ++i) CHECK(grown(i, "objects") == 3);
+}
+
+// A render of so many ms, overlapped, in which as many tests were made in as many voxels; all of it work.
+TorusRun made_up_run(double ms, double stepwise_ms, std::uint64_t tests, std::uint64_t steps) {
+    TorusRun run;
+    run.time.overlapped_ms = ms;
+    run.time.stepwise_ms = stepwise_ms;
+    run.result.load = load_of({static_cast<std::uint64_t>(ms * 25'000)});
+    run.result.events[RAYA_PRIMARY] = 100;
+    run.result.events[RAYA_SPHERE_TESTS] = tests;
+    run.result.events[RAYA_STEPS] = steps;
+    return run;
+}
+
+struct MadeUp {
+    double slower = 1.2, slower_stepwise = 1.2;  // random over even
+    double time = 10;                            // of ten times as many objects
+    std::uint64_t steps = 1000;                  // then; 1000 before
+};
+
+StudyPage made_up_objects(const MadeUp& m) {
+    ObjectsRuns all;
+    for (const int objects : {64, 640})
+        for (const std::string protocol : {kProtocolOfPaper.name, kProtocolOfRaya.name})
+            for (const std::string kind : {kEven, kRandom, kWithin}) {
+                const double ms = objects == 64 ? 10 : 10 * m.time, by = kind == kEven ? 1 : m.slower;
+                const std::uint64_t steps = objects == 64 ? 1000 : m.steps;
+                const auto run = [&](double lot) {
+                    return made_up_run(ms * by * lot, 2 * ms * (kind == kEven ? 1 : m.slower_stepwise) * lot,
+                                       steps * std::uint64_t(objects) / 64, steps);
+                };
+                all.rows.push_back({objects, kind, protocol, {run(1)}});
+                if (kind != kEven) all.rows.back().runs = {run(0.999), run(1), run(1.001)};
+            }
+    for (const int objects : {64, 640})
+        for (const std::string kind : {kEven, kRandom}) all.primary.push_back({objects, kind, {0.5}, {0.5}, {1.5}});
+    all.words = {{64, 48, 20, 40}};
+    return objects_page(all, kSize);
+}
+
+TEST_CASE("objects: verdicts follow from the figures", "[study]") {
+    using enum ClaimVerdict;
+    const auto verdicts = [](const MadeUp& m) {
+        const StudyPage page = made_up_objects(m);
+        check_page(page);
+        return each(page.claims, &Claim::verdict);
+    };
+    // Random: both bounds slower; both not; one of each; neither slower nor not, by their intervals.
+    CHECK(verdicts({})[0] == kReproduced);
+    CHECK(verdicts({.slower = 1, .slower_stepwise = 1})[0] == kNotReproduced);
+    CHECK(verdicts({.slower = 1, .slower_stepwise = 1.3})[0] == kCannotTell);
+    CHECK(verdicts({.slower = 1.019, .slower_stepwise = 1.019})[0] == kCannotTell);
+    // Growth: as the objects; less, since rays go through fewer voxels; less for another reason.
+    CHECK(verdicts({})[1] == kNotReproduced);
+    const auto deep = verdicts({.time = 2, .steps = 200}), other = verdicts({.time = 2, .steps = 1000});
+    CHECK(deep[1] == kReproduced);
+    CHECK(deep[2] == kReproduced);
+    CHECK(other[1] == kReproduced);
+    CHECK(other[2] == kNotReproduced);
 }
 
 TEST_CASE("the torus's studies are on the list", "[study]") {
