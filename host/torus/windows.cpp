@@ -16,34 +16,39 @@ Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 class Projection {
   public:
     Projection(const raya_job& job, const NumberFormat& format)
-        : eye_(vec3(job.eye)), corner_(vec3(job.corner)), column_(vec3(job.column_step)), row_(vec3(job.row_step)) {
-        const double step = std::min(column_.length(), row_.length());
+        : eye_(vec3(job.eye)),
+          corner_(vec3(job.corner)),
+          column_(vec3(job.column_step)),
+          row_(vec3(job.row_step)),
+          normal_(column_.cross(row_)),
+          step_(std::min(column_.length(), row_.length())) {
+        const double width = job.mapping.width, height = job.mapping.height;
         // A direction is off by some units in the last place of its length; so many pixels, and one for those at the
         // edge.
         const double unit = std::ldexp(1.0, -format.fraction_bits);
-        margin_ =
-            1 + 16 * unit *
-                    (corner_.length() + job.mapping.width * column_.length() + job.mapping.height * row_.length()) /
-                    step;
+        margin_ = 1 + 16 * unit * (corner_.length() + width * column_.length() + height * row_.length()) / step_;
+        for (const double x : {-1.0, width})
+            for (const double y : {-1.0, height})
+                longest_ = std::max(longest_, (corner_ + x * column_ + y * row_).length());
     }
 
     const Vec3& eye() const { return eye_; }
     double margin() const { return margin_; }
+    double step() const { return step_; }        // between neighbouring pixels where c = 1, the shorter way
+    double longest() const { return longest_; }  // P - eye of a pixel where c = 1
 
-    // Column and row of P; false where it lies beside or behind the eye.
-    bool pixel(const Vec3& p, double& x, double& y) const {
-        const Vec3 v = p - eye_, normal = column_.cross(row_);
-        const double depth = v.dot(normal) / corner_.dot(normal);  // c
-        if (!(depth > 1e-6 * v.length())) return false;
-        const Vec3 flat = v / depth - corner_;
-        x = flat.dot(row_.cross(normal)) / column_.dot(row_.cross(normal));
-        y = flat.dot(column_.cross(normal)) / row_.dot(column_.cross(normal));
-        return true;
+    double depth(const Vec3& p) const { return (p - eye_).dot(normal_) / corner_.dot(normal_); }  // c
+
+    // Column and row of P, which lies before the eye.
+    std::array<double, 2> pixel(const Vec3& p) const {
+        const Vec3 flat = (p - eye_) / depth(p) - corner_;
+        return {flat.dot(row_.cross(normal_)) / column_.dot(row_.cross(normal_)),
+                flat.dot(column_.cross(normal_)) / row_.dot(column_.cross(normal_))};
     }
 
   private:
-    Vec3 eye_, corner_, column_, row_;
-    double margin_;
+    Vec3 eye_, corner_, column_, row_, normal_;
+    double step_, margin_, longest_ = 0;
 };
 
 struct Bounds {
@@ -64,18 +69,32 @@ Side side_of(const raya_grid& grid, std::uint32_t axis, double eye) {
     return {low, high, std::ldexp(std::abs(eye) + std::max(std::abs(low), std::abs(high)), -20)};
 }
 
-// The face of a voxel across an axis, at its plane k.
+// What of a face is at depth `least` or more (Sutherland & Hodgman 1974).
+std::vector<Vec3> part_before(const Projection& projection, const std::array<Vec3, 4>& face, double least) {
+    std::vector<Vec3> part;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+        const Vec3 &a = face[i], &b = face[(i + 1) % face.size()];
+        const double from = projection.depth(a), to = projection.depth(b);
+        if (from >= least) part.push_back(a);
+        if ((from >= least) != (to >= least)) part.push_back(a + (least - from) / (to - from) * (b - a));
+    }
+    return part;
+}
+
+// The face of a voxel across an axis, at its plane k, which is so far from the eye.
 void add_face(Bounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
-              std::uint32_t axis, std::uint32_t k) {
-    for (std::uint32_t corner = 0; corner < 4 && !bounds.whole; ++corner) {
-        const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
-        Vec3 p;
-        p[axis] = raya_voxel_plane(grid, axis, k);
-        p[second] = raya_voxel_plane(grid, second, at.at[second] + (corner & 1));
-        p[third] = raya_voxel_plane(grid, third, at.at[third] + (corner >> 1));
-        double place[2];
-        bounds.whole = !projection.pixel(p, place[0], place[1]);
-        for (int i = 0; i < 2 && !bounds.whole; ++i) {
+              std::uint32_t axis, std::uint32_t k, double distance) {
+    const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
+    std::array<Vec3, 4> face;
+    for (std::uint32_t corner = 0; corner < 4; ++corner) {
+        face[corner][axis] = raya_voxel_plane(grid, axis, k);
+        face[corner][second] = raya_voxel_plane(grid, second, at.at[second] + (corner == 1 || corner == 2 ? 1 : 0));
+        face[corner][third] = raya_voxel_plane(grid, third, at.at[third] + corner / 2);
+    }
+    // No pixel shows a point that is nearer.
+    for (const Vec3& p : part_before(projection, face, distance / projection.longest() / 2)) {
+        const std::array<double, 2> place = projection.pixel(p);
+        for (std::size_t i = 0; i < 2; ++i) {
             bounds.low[i] = std::min(bounds.low[i], place[i]);
             bounds.high[i] = std::max(bounds.high[i], place[i]);
         }
@@ -91,9 +110,12 @@ void add_voxel(Bounds& bounds, const Projection& projection, const raya_grid& gr
         const double low = raya_voxel_plane(grid, axis, at.at[axis]),
                      high = raya_voxel_plane(grid, axis, at.at[axis] + 1);
         holds_eye = holds_eye && eye >= low - box.slack && eye <= high + box.slack;
-        if (eye < box.low && low <= box.low + box.slack) add_face(bounds, projection, grid, at, axis, at.at[axis]);
-        if (eye > box.high && high >= box.high - box.slack)
-            add_face(bounds, projection, grid, at, axis, at.at[axis] + 1);
+        const double before = box.low - eye, behind = eye - box.high, distance = std::max(before, behind);
+        const bool is_outer = before > 0 ? low <= box.low + box.slack : behind > 0 && high >= box.high - box.slack;
+        if (!is_outer) continue;
+        // So near that rounding may put the entry more than a pixel off.
+        bounds.whole = bounds.whole || box.slack * projection.longest() > distance * projection.step();
+        add_face(bounds, projection, grid, at, axis, at.at[axis] + (behind > 0 ? 1 : 0), distance);
     }
     bounds.whole = bounds.whole || holds_eye;
 }
