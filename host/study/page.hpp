@@ -65,6 +65,14 @@ struct StudyPlot {
     std::vector<PlotSeries> series = {};
 };
 
+/// An image that was rendered.
+struct StudyPicture {
+    std::string name;   // stem of its file
+    std::string title;  // a line
+    std::string words;  // what is seen, for those who do not see it
+    std::string png;    // the file's bytes
+};
+
 /// Where a figure of a paper stands.
 enum class Source {
     kPrinted,
@@ -113,8 +121,9 @@ struct StudyPage {
     std::vector<StudyTable> tables = {};
     std::vector<StudyPlot> plots = {};
     std::vector<std::string> news = {};  // what no paper has, a sentence each
-    std::string beside = {};             // whose figures stand in `comparisons`, as in paper.hpp; empty: nobody's
-    RunRecord run = {};                  // empty until a command has run the study
+    std::vector<StudyPicture> pictures = {};
+    std::string beside = {};  // whose figures stand in `comparisons`, as in paper.hpp; empty: nobody's
+    RunRecord run = {};       // empty until a command has run the study
 
     /// By its name, by what is compared. std::out_of_range where there is none.
     const StudyTable& table(const std::string& name) const;

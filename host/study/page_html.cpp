@@ -61,7 +61,7 @@ std::string page_html(const StudyPage& page, const PageFiles& files) {
     html += html_section("What is seen", html_list(page.findings));
     html += html_section("What the papers say", claims_html(page));
     html += html_section(comparison_title(page), comparisons_html(page));
-    html += figures_html(page, files);
+    html += joined(page.pictures, "", html_picture) + figures_html(page, files);
     for (const StudyTable& table : page.tables) html += table_html(table);
     html += html_section("What is new", html_list(page.news));
     html += html_section("How to repeat it", repeat_html(page));

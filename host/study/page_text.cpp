@@ -164,6 +164,8 @@ void check_page(const StudyPage& page) {
     }
     for (const StudyPlot& plot : page.plots)
         if (!plots.insert(plot.name).second) throw std::invalid_argument("two plots are called " + plot.name);
+    for (const StudyPicture& picture : page.pictures)  // both are files NAME.png
+        if (!plots.insert(picture.name).second) throw std::invalid_argument("two pictures are called " + picture.name);
 }
 
 }  // namespace raya

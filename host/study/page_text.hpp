@@ -36,7 +36,8 @@ std::string description_of(const StudyPlot& plot);
 /// What is needed to have the page's figures again: command, version, device, settings. (name, value).
 std::vector<std::pair<std::string, std::string>> repeat_lines(const StudyPage& page);
 
-/// std::invalid_argument for a table whose rows do not fit its columns or for two tables or two plots of one name.
+/// std::invalid_argument for a table whose rows do not fit its columns or for two tables, or two plots or pictures, of
+/// one name.
 void check_page(const StudyPage& page);
 
 }  // namespace raya

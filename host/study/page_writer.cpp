@@ -56,6 +56,10 @@ Json series_json(const PlotSeries& s) {
             {"half_widths", json_list(s.half_widths, json_number)}};
 }
 
+Json picture_json(const StudyPicture& picture) {
+    return {{"name", picture.name}, {"title", picture.title}, {"words", picture.words}};
+}
+
 Json run_json(const RunRecord& run) {
     return {{"version", run.version},
             {"command", run.command},
@@ -100,6 +104,12 @@ std::string table_section(const StudyTable& table) {
     return section(table.title, fmt::format("{}\nWith all digits: {}.\n", cells, file));
 }
 
+std::string pictures_text(const StudyPage& page) {
+    return joined(page.pictures, "\n", [](const StudyPicture& picture) {
+        return fmt::format("![{}]({}.png)\n\n{}\n", picture.words, picture.name, picture.title);
+    });
+}
+
 std::string plots_text(const StudyPage& page, const PlotOutcome& plots) {
     if (page.plots.empty()) return {};
     if (!plots.drawn)
@@ -137,6 +147,7 @@ Json page_json(const StudyPage& page) {
             {"findings", page.findings},
             {"tables", json_list(page.tables, table_json)},
             {"plots", json_list(page.plots, plot_json)},
+            {"pictures", json_list(page.pictures, picture_json)},
             {"news", page.news}};
 }
 
@@ -148,6 +159,7 @@ std::string page_markdown(const StudyPage& page, const PlotOutcome& plots) {
     text += section("What the papers say", table_text(claim_cells(page)));
     text += section("What is seen", list(page.findings));
     text += section("What is new", list(page.news));
+    text += section("Pictures", pictures_text(page));
     for (const StudyTable& table : page.tables) text += table_section(table);
     text += section("Plots", plots_text(page, plots));
     text += section("How to repeat it", repeat_text(page));
@@ -159,6 +171,7 @@ PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& pag
     // A scene's label may be a path in any encoding; JSON must be UTF-8.
     const std::string json = page_json(page).dump(2);
     for (const StudyTable& table : page.tables) write_whole_file(folder / (table.name + ".csv"), table_csv(table));
+    for (const StudyPicture& picture : page.pictures) write_whole_file(folder / (picture.name + ".png"), picture.png);
     write_whole_file(folder / (page.name + ".json"), json + '\n');
     PlotOutcome plots = draw_plots(folder, page);
     write_whole_file(folder / (page.name + ".md"), page_markdown(page, plots));

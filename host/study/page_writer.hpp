@@ -19,13 +19,14 @@ Json cell_json(const Cell& cell);
 /// Everything on the page, the points of its plots too.
 Json page_json(const StudyPage& page);
 
-/// Question, method, the paper's figures beside ours, findings, tables, plots, how to repeat it. Numbers have five digits, as a reader
-/// wants them; the other files have all.
+/// Question, method, the paper's figures beside ours, findings, tables, plots, how to repeat it. Numbers have five
+/// digits, as a reader wants them; the other files have all.
 std::string page_markdown(const StudyPage& page, const PlotOutcome& plots);
 
-/// Writes NAME.md, NAME.json and TABLE.csv for each table and draws the plots into `folder`, which must be there.
-/// Returns what became of the plots. Throws UserError for a file that cannot be written; std::invalid_argument for a
-/// table whose rows do not fit its columns or for two tables or two plots of one name, and then writes nothing.
+/// Writes NAME.md, NAME.json and TABLE.csv for each table and PICTURE.png for each picture and draws the plots into
+/// `folder`, which must be there. Returns what became of the plots. Throws UserError for a file that cannot be written;
+/// std::invalid_argument for a table whose rows do not fit its columns or for two tables, or two plots or pictures, of
+/// one name, and then writes nothing.
 PlotOutcome write_page(const std::filesystem::path& folder, const StudyPage& page);
 
 /// The story in order: what the verdicts come to; then title, question, the paper's figures beside ours and the first

@@ -12,6 +12,14 @@ namespace raya {
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
+/// A PNG of one pixel, RGB (255, 0, 0).
+inline const std::string kRedPixel(
+    "\211\120\116\107\015\012\032\012\000\000\000\015\111\110\104\122\000\000\000\001\000\000"
+    "\000\001\010\002\000\000\000\220\167\123\336\000\000\000\014\111\104\101\124\170\332\143"
+    "\370\317\300\000\000\003\001\001\000\367\003\101\103\000\000\000\000\111\105\116\104\256"
+    "\102\140\202",
+    69);
+
 inline StudyPage small_page() {
     StudyPage page;
     page.name = "small";
@@ -36,6 +44,7 @@ inline StudyPage small_page() {
                             {"scenes", {1, 1}, {0.25, 4}, PlotStyle::kPoints},
                             {"paper", {0}, {1.58}, PlotStyle::kPaper}};
     page.settings = {{"pes", 256}, {"scene", "`a` <b>.nff"}};
+    page.pictures = {{"small-dot", "A dot.", "one <red> pixel", kRedPixel}};
     page.beside = "A & B 1993";
     page.run = {"1.2.3", "raya study small -o DIR", "a device", "a platform", "4.5"};
     return page;

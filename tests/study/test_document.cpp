@@ -55,10 +55,11 @@ TEST_CASE("every word, claim, figure, table and setting of a page stands in the 
     for (const StudyPlot& p : page.plots) words.push_back(p.title);
     for (const std::string& word : words) CHECK_THAT(html, Contains(html_prose(word)));
     for (const char* part : {"35 ± 5 ms", "140 ms (derived)", "raya 1.2.3", "a device", "driver 4.5", "small.json",
-                             "<td>a|b &quot;c&quot;</td>", "`a` &lt;b&gt;.nff", "<td class=\"n\">0.33333</td>"})
+                             "<td>a|b &quot;c&quot;</td>", "`a` &lt;b&gt;.nff", "alt=\"one &lt;red&gt; pixel\"",
+                             "src=\"data:image/png;base64,iVBORw0KGgo", "A dot.", "<td class=\"n\">0.33333</td>"})
         CHECK_THAT(html, Contains(part));
     CHECK(count_of(html, "<svg") == 1);
-    CHECK(count_of(html, "<figure") == 1);
+    CHECK(count_of(html, "<figure") == 2);
     CHECK(count_of(html, "<section class=\"study\"") == 2);
     for (const char* tag :
          {"section", "table", "ul", "li", "p", "div", "figure", "details", "dl", "tr", "td", "th", "a"})
@@ -95,7 +96,7 @@ TEST_CASE("where no claim is judged, the conclusion says so", "[document]") {
 TEST_CASE("the document asks for nothing from anywhere", "[document]") {
     const std::string html = small_document();
     CHECK_THAT(html, Contains("default-src 'none'"));
-    for (const char* part : {"<link", "<iframe", "@import", "src=", "fetch(", "XMLHttp", "import("})
+    for (const char* part : {"<link", "<iframe", "@import", "src=\"http", "src='", "fetch(", "XMLHttp", "import("})
         CHECK_THAT(html, !Contains(part));
     const std::string style = embedded_files().at("host/study/document/style.css"),
                       script = embedded_files().at("host/study/document/script.js");
@@ -116,6 +117,7 @@ TEST_CASE("a script in a scene's name is text, wherever the name comes to stand"
     page.claims = {{bad, bad, bad, ClaimVerdict::kCannotTell, bad}};
     page.tables[0].title = page.tables[0].columns[0].label = bad;
     page.tables[0].rows[0][2] = bad;
+    page.pictures = {{bad, bad, bad, bad}};
     page.plots[0].title = page.plots[0].x_label = page.plots[0].series[0].label = bad;
     const PageFiles missing{{false, bad}};
     for (const std::vector<StudyPage>& pages : {std::vector{page}, std::vector{page, page}}) {
@@ -129,7 +131,8 @@ TEST_CASE("a script in a scene's name is text, wherever the name comes to stand"
 TEST_CASE("a plot that could not be drawn says why, and its points are open to read", "[document]") {
     const std::vector<StudyPage> pages = {small_page()};
     const std::string html = document_html(pages, {{{false, "there is no <pen>"}}});
-    CHECK_THAT(html, Contains("Not drawn: there is no &lt;pen&gt;.") && Contains("<details open><summary>Its points (9)"));
+    CHECK_THAT(html,
+               Contains("Not drawn: there is no &lt;pen&gt;.") && Contains("<details open><summary>Its points (9)"));
     CHECK_THAT(html, Contains("<td>ours</td><td class=\"n\">0</td><td class=\"n\">1.5</td><td class=\"n\">0.25</td>"));
     CHECK_THAT(html, !Contains("<svg"));
 }

@@ -42,6 +42,7 @@ const std::string kPage =
     "| A & B 1993, Fig. 2 | Always. | cannot be told | Tried once. |\n"
     "\n## What is seen\n\n- It does.\n- Nearly.\n"
     "\n## What is new\n\n- It also multiplies.\n"
+    "\n## Pictures\n\n![one <red> pixel](small-dot.png)\n\nA dot.\n"
     "\n## All offsets\n\n"
     "| p | u | which, if any |\n"
     "|---|---|---|\n"
@@ -169,6 +170,8 @@ TEST_CASE("JSON has everything, with strings for what is infinite and null for w
     CHECK(json["tables"][0]["rows"][0] == Document::parse("[0, 0.3333333333333333, \"a|b \\\"c\\\"\"]"));
     CHECK(json["tables"][0]["rows"][1][1] == "inf");
     CHECK(json["tables"][1]["rows"].size() == 2);
+    CHECK(json["pictures"] ==
+          Document::parse("[{\"name\":\"small-dot\",\"title\":\"A dot.\",\"words\":\"one <red> pixel\"}]"));
     const auto& plot = json["plots"][0];
     CHECK(plot["name"] == "small-u");
     CHECK(
@@ -208,7 +211,8 @@ TEST_CASE("write_page writes page, JSON and tables, and plots, and nothing else"
     StudyPage page = small_page();
     page.plots.clear();
     CHECK(write_page(folder.path(), page).drawn);
-    CHECK(folder.entries() == 4);
+    CHECK(folder.entries() == 5);
+    CHECK(contents_of(folder / "small-dot.png") == kRedPixel);
     CHECK(contents_of(folder / "small.md") == page_markdown(page, {true, {}}));
     CHECK(contents_of(folder / "small.csv") == table_csv(page.tables[0]));
     CHECK(contents_of(folder / "small-long.csv") == table_csv(page.tables[1]));
@@ -229,6 +233,7 @@ TEST_CASE("a page that contradicts itself is refused before anything is written"
     StudyPage page = small_page();
     SECTION("a row too short") { page.tables[1].rows.push_back({}); }
     SECTION("two tables of one name") { page.tables[1].name = "small"; }
+    SECTION("a picture called as a plot") { page.pictures[0].name = "small-u"; }
     SECTION("two plots of one name") { page.plots.push_back(page.plots[0]); }
     CHECK_THROWS_AS(write_page(folder.path(), page), std::invalid_argument);
     CHECK(folder.entries() == 0);

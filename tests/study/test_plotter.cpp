@@ -105,7 +105,7 @@ TEST_CASE("a page's plots appear as SVG and PNG, the same bytes each time, where
     CHECK(contents_of(folder / "small-u.svg") == svg);
     CHECK(contents_of(folder / "small-u.png") == png);
     CHECK_THAT(contents_of(folder / "small.md"), Contains("![u over p](small-u.svg)"));
-    CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 7);  // 4, json.py and the plots
+    CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 8);  // 5, json.py and the plots
     CHECK(around.entries() == 1);
 }
 
