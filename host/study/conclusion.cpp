@@ -46,7 +46,7 @@ std::vector<std::string> claims_with(std::span<const StudyPage> pages, ClaimVerd
     for (const StudyPage& page : pages)
         for (const Claim& claim : page.claims)
             if (claim.verdict == verdict)
-                sentences.push_back(fmt::format("{}, {}: {} {}", claim.paper, claim.place, claim.words, claim.why));
+                sentences.push_back(fmt::format("{}, {}: \"{}\" {}", claim.paper, claim.place, claim.words, claim.why));
     return sentences;
 }
 

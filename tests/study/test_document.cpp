@@ -77,7 +77,7 @@ TEST_CASE("the document begins with a conclusion from the verdicts, and every cl
     const std::string front = html.substr(conclusion, first - conclusion);
     for (const char* part : {"Of 3 claims of 2 papers, 1 is reproduced, 1 is not, and 1 cannot be told.",
                              "Of 1 claim of C 1999, 0 are reproduced, 1 is not, and 0 cannot be told.",
-                             "C 1999, section 2: Never. It was, &lt;once&gt;.", "It also multiplies.",
+                             "C 1999, section 2: &quot;Never.&quot; It was, &lt;once&gt;.", "It also multiplies.",
                              "<a href=\"#other\">Another &amp; more</a>: Then it ends."})
         CHECK_THAT(front, Contains(part));
     const std::string table = html.substr(claims, first - claims);
