@@ -30,10 +30,18 @@ bool is_numeric(const TextCells& html, std::size_t column) {
     return any;
 }
 
-std::string row_of(const std::vector<std::string>& html, const std::vector<bool>& numeric, const char* tag) {
+// n: of numbers; w: of sentences, which want width; else nothing.
+std::string class_of(const TextCells& html, std::size_t column) {
+    constexpr std::size_t kSentence = 60;  // characters, tags among them
+    if (is_numeric(html, column)) return " class=\"n\"";
+    const bool wide = std::ranges::any_of(html, [&](const auto& row) { return row[column].size() > kSentence; });
+    return wide ? " class=\"w\"" : "";
+}
+
+std::string row_of(const std::vector<std::string>& html, const std::vector<std::string>& classes, const char* tag) {
     std::string text = "<tr>";
     for (std::size_t i = 0; i < html.size(); ++i)
-        text += fmt::format("<{}{}>{}</{}>", tag, numeric[i] ? " class=\"n\"" : "", html[i], std::string(tag, 2));
+        text += fmt::format("<{}{}>{}</{}>", tag, classes[i], html[i], std::string(tag, 2));
     return text + "</tr>\n";
 }
 
@@ -79,13 +87,13 @@ TextCells html_cells(TextCells cells) {
 
 std::string html_table(const HtmlTable& table) {
     if (table.html.empty()) return {};
-    std::vector<bool> numeric;
-    for (std::size_t i = 0; i < table.html[0].size(); ++i) numeric.push_back(is_numeric(table.html, i));
+    std::vector<std::string> classes;
+    for (std::size_t i = 0; i < table.html[0].size(); ++i) classes.push_back(class_of(table.html, i));
     std::string text = fmt::format(
         "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table aria-label=\"{0}\">\n<thead>",
         html_text(table.label));
-    text += row_of(table.html[0], numeric, "th scope=\"col\"") + "</thead>\n<tbody>\n";
-    for (std::size_t row = 1; row < table.html.size(); ++row) text += row_of(table.html[row], numeric, "td");
+    text += row_of(table.html[0], classes, "th scope=\"col\"") + "</thead>\n<tbody>\n";
+    for (std::size_t row = 1; row < table.html.size(); ++row) text += row_of(table.html[row], classes, "td");
     return text + "</tbody></table></div>\n";
 }
 

@@ -36,6 +36,7 @@ TEST_CASE("columns of numbers are told from columns of words", "[html]") {
                               "<th scope=\"col\" class=\"n\">figure</th><th scope=\"col\">mixed</th>"));
     CHECK_THAT(html, Contains("<td>4x4</td><td class=\"n\">1</td><td class=\"n\">35 ± 5 ms</td><td>1</td>"));
     CHECK(html_table({"none", {}}) == "");
+    CHECK_THAT(html_table({"why", {{"why"}, {std::string(61, 'x')}}}), Contains("<td class=\"w\">xxx"));
 }
 
 TextCells rows(std::size_t count) {
