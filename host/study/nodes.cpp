@@ -170,15 +170,17 @@ std::string finding_of_balance(const Series& one, const Series& fixed) {
         fixed.back().nodes(), fixed.back().imbalance());
 }
 
+// The machine of each series that throws most rays away.
 std::string finding_of_making(const Series& one, const Series& fixed) {
     const auto text = [](const Series& s) {
-        const Row& last = s.back();
-        return fmt::format("{:.1f} primary rays for each that is kept on {} nodes, {}",
-                           1 + last.per_pixel(last.discarded()), last.nodes(),
-                           last.fixed ? last.voxels() + " voxels laid out cyclically" : "a voxel each");
+        const Row& most = *std::ranges::max_element(s, {}, [](const Row& row) { return row.discarded(); });
+        return fmt::format("{:.1f} with {} ({} nodes)", 1 + most.per_pixel(most.discarded()),
+                           most.fixed ? most.voxels() + " voxels laid out cyclically" : "a voxel each", most.nodes());
     };
-    return fmt::format("{}, where all nodes make primary rays, they make {}; {}. What is thrown away is charged.",
-                       one.front().scene, text(one), text(fixed));
+    return fmt::format(
+        "{}: nodes that make their own primary rays make up to {} for each that is kept, up to {}; what is thrown away "
+        "is charged.",
+        one.front().scene, text(one), text(fixed));
 }
 
 }  // namespace

@@ -81,6 +81,7 @@ Rendered render_on_torus(const Verification& v, Session& session, const Renderin
     s.links = r.links;
     s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // unlike the nodes: some hold several, in turn
     s.inject = r.inject;
+    s.packets.return_a_ray = r.inject == Injection::kRoot;  // both kinds of returns, too
     s.bounces = kPictureBounces;
     s.format = parse_format(picture.format);
     s.sampling = picture.sampling;
