@@ -180,9 +180,14 @@ Claim claim(const char* place, const char* words, bool seen, std::string why) {
     return {paper::kTp, place, words, seen ? ClaimVerdict::kReproduced : ClaimVerdict::kNotReproduced, std::move(why)};
 }
 
+constexpr double kNoticed = 1.02;  // times as much: not the same
+
+bool rises(const std::vector<Series>& all) {
+    return std::ranges::all_of(all, [](const Series& s) { return over_least(s, s.back(), kModelled) > kNoticed; });
+}
+
 // Of all series the least lies where there are as many divisions as objects, or is no more than 2 % less.
 bool is_least_at_objects(const std::vector<Series>& all, const Subject& subject) {
-    constexpr double kNoticed = 1.02;
     return std::ranges::all_of(all, [&](const Series& series) {
         const GridRun* equal = with_voxels(series, series.front().objects);
         return equal != nullptr && over_least(series, *equal, subject) <= kNoticed;
@@ -209,7 +214,8 @@ std::vector<Claim> claims_of(const std::vector<Series>& all) {
                                     modelled, measured));
     if (is_near(modelled) != is_near(measured)) times.verdict = ClaimVerdict::kCannotTell;
     return {claim("Fig. 3", "Time falls until there are as many divisions as objects, then it rises.",
-                  is_least_at_objects(all, kModelled), why_of_optimum(kModelled, all)),
+                  is_least_at_objects(all, kModelled) && rises(all),
+                  why_of_optimum(kModelled, all) + ' ' + finding_of_rise(all)),
             claim("Fig. 3", "It falls the more, the more objects there are.",
                   std::ranges::is_sorted(all, {}, fall_from_one),
                   fmt::format("From one division to the least modelled time: {} times less.",
