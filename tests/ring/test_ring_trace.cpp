@@ -135,9 +135,9 @@ TEST_CASE("the works of the kernels are what was counted", "[ring]") {
     CHECK(works[0].operations + works[1].operations == all.multiply_accumulates);
     CHECK(works[0].divisions + works[1].divisions == all.divisions);
     CHECK(works[0].roots + works[1].roots == all.roots);
-    // One launch: the words by each of 24 PEs, 15 counters of a PE read and written, 12 + 8 bytes a pixel.
+    // One launch: the words by each of 24 PEs, RAYA_EVENTS counters of a PE read and written, 12 + 8 bytes a pixel.
     const std::uint64_t words = super.result.communication.broadcast_words;
-    CHECK(works[0].bytes == 24 * 4 * words + 24 * 16 * 15 * super.result.group_size + 20 * 24 * 16);
+    CHECK(works[0].bytes == 24 * 4 * words + 24 * 16 * RAYA_EVENTS * super.result.group_size + 20 * 24 * 16);
     const std::uint64_t neighbours = 2 * 23 * 16 + 2 * 24 * 15;
     CHECK(works[2].label == "supersample.compare");
     CHECK(works[2].operations == 18 * neighbours);
