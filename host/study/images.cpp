@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "host/ring/schedule.hpp"
+#include "host/scene/generate.hpp"
 #include "host/study/arrays.hpp"
+#include "host/study/ensemble.hpp"
 #include "host/study/paper.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
@@ -57,9 +59,12 @@ StudyTable table_of_images(const Images& images, std::uint32_t p) {
                      {"efficiency" + cyclic, &Image::cyclic_efficiency}});
 }
 
-// Scenes are numbered by their first image; every series has a point for each.
+// Scenes are numbered in the order of their first image, and named below the axis; every series has a point for each.
 StudyPlot plot_of(const Images& images, std::uint32_t pes, std::uint32_t p) {
-    StudyPlot plot{"images", "Efficiency over the scenes", "scene, by its first number in the table", "efficiency"};
+    const auto first = where(images, [&](const Image& image) { return image.side == images.front().side; });
+    const std::string names =
+        joined(first, ", ", [](const Image& image) { return fmt::format("{} {}", image.scene_number, image.scene); });
+    StudyPlot plot{"images", "Efficiency over the scenes", "scene: " + names, "efficiency"};
     for (const Efficiency efficiency : {&Image::cyclic_efficiency, &Image::columns_efficiency}) {
         const std::uint32_t offset = efficiency == &Image::columns_efficiency ? 0 : p;
         const auto label = [&](const Image& image) { return fmt::format("p = {} at {}", offset, image.size()); };
@@ -67,24 +72,99 @@ StudyPlot plot_of(const Images& images, std::uint32_t pes, std::uint32_t p) {
             plot.series.push_back(std::move(series));
     }
     if (pes == paper::kPes && images.front().scene == "centre")
-        plot.series.push_back({"paper, its worst image at 256 x 256",
+        plot.series.push_back({"Kohata & Ito, their worst image",
                                {1, 1},
                                {paper::kEfficiency0, paper::kEfficiency16},
                                PlotStyle::kPaper});
     return plot;
 }
 
+// Pictures of one kind: the scenes' own, views of one scene, random scenes.
+struct Group {
+    std::string label;
+    Images images;
+    std::size_t size() const { return images.size(); }
+    Estimate columns() const { return mean_of_each(images, &Image::columns_efficiency); }
+    Estimate cyclic() const { return mean_of_each(images, &Image::cyclic_efficiency); }
+    Range columns_range() const { return {images, &Image::columns_efficiency}; }
+    Range cyclic_range() const { return {images, &Image::cyclic_efficiency}; }
+};
+
+// How far an efficiency lies from the mean of all.
+std::vector<double> deviations(const Images& images, Efficiency efficiency) {
+    const double mean = mean_of_each(images, efficiency).mean;
+    return each(images, [&](const Image& image) { return std::abs((image.*efficiency)() - mean); });
+}
+
 // The paper says so in words, without figures; ours for them are named in the sentence.
-std::string verdict_of(Range columns, Range cyclic) {
-    constexpr double kHigh = 0.8, kStrongly = 2;
-    const bool strongly = columns.width() >= kStrongly * cyclic.width() && columns.width() > 0;
-    const bool high = cyclic.least >= kHigh;
-    return fmt::format(
-        "The column split {} (\"strongly\": {:.1f} times the cyclic mapping's range or more); the cyclic mapping {} "
-        "(\"high\": {} or more).",
-        strongly ? "varies strongly, as the paper says" : "does not vary strongly, against what the paper says",
-        kStrongly, high ? "is high for all, as the paper says" : "is not high for all, against what the paper says",
-        kHigh);
+Claim claim_of_columns(const Images& images) {
+    constexpr double kStrongly = 2;
+    const auto columns = deviations(images, &Image::columns_efficiency),
+               cyclic = deviations(images, &Image::cyclic_efficiency);
+    std::vector<double> beyond;
+    for (std::size_t i = 0; i < images.size(); ++i) beyond.push_back(columns[i] - kStrongly * cyclic[i]);
+    const Estimate difference = estimate_of(beyond);
+    return {paper::kSpa, "section on the experiments", "The column split's efficiency varies strongly over the images.",
+            verdict_of(difference.low() > 0, difference.high() <= 0),
+            finding("images", "varies", "images"_a = images.size(), "columns"_a = estimate_of(columns).mean,
+                    "cyclic"_a = estimate_of(cyclic).mean, "strongly"_a = kStrongly)};
+}
+
+Claim claim_of_cyclic(const Images& images) {
+    constexpr double kHigh = 0.8;
+    const Image& worst = least(images, &Image::cyclic_efficiency);
+    const bool high = worst.cyclic.efficiency >= kHigh;
+    return {paper::kSpa, "section on the experiments", "The cyclic mapping's efficiency is high for all images.",
+            verdict_of(high, !high),
+            finding("images", "high", "images"_a = images.size(), "least"_a = worst.cyclic.efficiency,
+                    "scene"_a = worst.scene, "high"_a = kHigh,
+                    "count"_a = std::ranges::count_if(
+                        images, [](const Image& image) { return image.cyclic.efficiency >= kHigh; }))};
+}
+
+StudyTable table_of_groups(const std::vector<Group>& groups) {
+    return table_of("images-groups", "Mean efficiencies, with intervals of 95 %", groups,
+                    {{"pictures", &Group::label},
+                     {"number", &Group::size},
+                     {"p = 0", [](const Group& g) { return g.columns().mean; }},
+                     {"p = 0, +-", [](const Group& g) { return g.columns().half_width; }},
+                     {"p = 0, least", [](const Group& g) { return g.columns_range().least; }},
+                     {"p = 0, largest", [](const Group& g) { return g.columns_range().most; }},
+                     {"cyclic", [](const Group& g) { return g.cyclic().mean; }},
+                     {"cyclic, +-", [](const Group& g) { return g.cyclic().half_width; }},
+                     {"cyclic, least", [](const Group& g) { return g.cyclic_range().least; }},
+                     {"cyclic, largest", [](const Group& g) { return g.cyclic_range().most; }}});
+}
+
+// Efficiencies in ascending order: how many pictures have so little or less.
+PlotSeries sorted_line(const std::string& label, const Images& images, Efficiency efficiency) {
+    auto values = each(images, efficiency);
+    std::ranges::sort(values);
+    PlotSeries series{label, {}, values, PlotStyle::kSteps};
+    for (std::size_t i = 0; i < values.size(); ++i)
+        series.x.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(values.size()));
+    return series;
+}
+
+StudyPlot plot_of_groups(const std::vector<Group>& groups) {
+    StudyPlot plot{"images-groups", "How many pictures are so efficient", "share of the pictures, ascending (%)",
+                   "efficiency"};
+    for (const Group& group : groups) {
+        plot.series.push_back(sorted_line("cyclic, " + group.label, group.images, &Image::cyclic_efficiency));
+        plot.series.push_back(sorted_line("p = 0, " + group.label, group.images, &Image::columns_efficiency));
+    }
+    return plot;
+}
+
+std::string finding_of_groups(const std::vector<Group>& groups) {
+    return "Mean efficiency of p = 0 and of the cyclic mapping: " +
+           joined(groups, "; ",
+                  [](const Group& group) {
+                      return fmt::format("{} of {} {}",
+                                         with_interval(group.columns()) + " and " + with_interval(group.cyclic()),
+                                         group.size(), group.label);
+                  }) +
+           ".";
 }
 
 std::string finding_of_worst(const Images& images) {
@@ -97,56 +177,83 @@ std::string finding_of_worst(const Images& images) {
                      : fmt::format("It is never below the column split on {} images.", images.size()));
 }
 
-double mean_of(const Images& images, Efficiency efficiency) {
-    double sum = 0;
-    for (const Image& image : images) sum += (image.*efficiency)();
-    return sum / static_cast<double>(images.size());
-}
-
-std::string finding_of_sides(const Images& images) {
-    return "Mean efficiency of p = 0 and of the cyclic mapping at " +
-           joined(distinct(images, &Image::side), ", at ",
-                  [&](std::uint32_t side) {
-                      const Images some = where(images, [&](const Image& image) { return image.side == side; });
-                      return fmt::format("{}: {:.3f} and {:.3f}", some[0].size(),
-                                         mean_of(some, &Image::columns_efficiency),
-                                         mean_of(some, &Image::cyclic_efficiency));
-                  }) +
-           ".";
-}
-
 std::vector<Comparison> comparisons_of(const Images& images, std::uint32_t pes, Range columns, Range cyclic) {
     const Image& first = images.front();
     const bool same = pes == paper::kPes && first.scene == "centre" && first.side == paper::kSize;
     const auto paper = [&](double value) { return same ? std::optional<double>(value) : std::nullopt; };
-    const std::string name = first.scene + " at " + first.size(), source = same ? "the paper's from its tables" : "";
-    return {{name + ", p = 0", "", paper(paper::kEfficiency0), first.columns.efficiency,
-             source + (same ? ", of its most unbalanced image" : "")},
-            {name + ", cyclic", "", paper(paper::kEfficiency16), first.cyclic.efficiency, source},
-            {"lowest of all, p = 0", "", std::nullopt, columns.least, "the paper: varies strongly"},
+    const std::string name = first.scene + " at " + first.size(), source = same ? "of their most unbalanced image" : "";
+    return {{name + ", p = 0", "", paper(paper::kEfficiency0), first.columns.efficiency, source, Source::kDerived},
+            {name + ", cyclic", "", paper(paper::kEfficiency16), first.cyclic.efficiency, source, Source::kDerived},
+            {"lowest of all, p = 0", "", std::nullopt, columns.least, "Kohata & Ito: varies strongly"},
             {"highest of all, p = 0", "", std::nullopt, columns.most},
-            {"lowest of all, cyclic", "", std::nullopt, cyclic.least, "the paper: high for all"},
+            {"lowest of all, cyclic", "", std::nullopt, cyclic.least, "Kohata & Ito: high for all"},
             {"highest of all, cyclic", "", std::nullopt, cyclic.most}};
 }
 
 }  // namespace
 
-StudyPage images_page(std::uint32_t pes, const std::vector<const Costs*>& all) {
+StudyPage images_page(std::uint32_t pes, const std::vector<const Costs*>& all, const std::vector<ImageGroup>& more) {
     const std::uint32_t p = root_offset(pes);
     const Images images = images_of(pes, p, all);
+    std::vector<Group> groups;
+    for (const std::uint32_t side : distinct(images, &Image::side))
+        groups.push_back({fmt::format("scenes at {0} x {0}", side),
+                          where(images, [&](const Image& image) { return image.side == side; })});
+    Images every = images;
+    for (const ImageGroup& group : more) {
+        groups.push_back({group.label, images_of(pes, p, group.pictures)});
+        every.insert(every.end(), groups.back().images.begin(), groups.back().images.end());
+    }
     const Range columns(images, &Image::columns_efficiency), cyclic(images, &Image::cyclic_efficiency);
     const auto objects = each(images, &Image::objects);
-    StudyPage page = page_about("images", {{"pes", pes}, {"offset", p}, {"images", images.size()}},
-                                {{"fewest", std::ranges::min(objects)}, {"most", std::ranges::max(objects)}});
+    StudyPage page = page_about(
+        "images", {{"pes", pes}, {"offset", p}, {"images", images.size()}, {"groups", each(more, &ImageGroup::label)}},
+        {{"fewest", std::ranges::min(objects)},
+         {"most", std::ranges::max(objects)},
+         {"more", joined(more, " ", [](const ImageGroup& group) { return group.method; })}});
     page.comparisons = comparisons_of(images, pes, columns, cyclic);
-    page.findings = {
-        fmt::format("Efficiency is {:.3f} to {:.3f} with the column split and {:.3f} to {:.3f} with p = {}.",
-                    columns.least, columns.most, cyclic.least, cyclic.most, p),
-        verdict_of(columns, cyclic), finding_of_worst(images), finding_of_sides(images)};
-    page.tables = {table_of_images(images, p)};
-    page.plots = {plot_of(images, pes, p)};
+    if (every.size() > 1) page.claims = {claim_of_columns(every), claim_of_cyclic(every)};
+    page.findings = {finding_of_groups(groups),
+                     fmt::format("Of the scenes' own pictures efficiency is {:.3f} to {:.3f} with the column split and "
+                                 "{:.3f} to {:.3f} with p = {}.",
+                                 columns.least, columns.most, cyclic.least, cyclic.most, p),
+                     finding_of_worst(images)};
+    page.tables = {table_of_groups(groups), table_of_images(images, p)};
+    page.plots = {plot_of(images, pes, p), plot_of_groups(groups)};
+    page.news = {sentence("images", "news")};
     return page;
 }
+
+namespace {
+
+// Views of the scene on which columns do worst, and random scenes of as many objects as the paper's.
+std::vector<ImageGroup> groups_of(Laboratory& lab, const Scenes& scenes, std::uint32_t size) {
+    constexpr int kFewest = 6, kMost = 30;  // objects, as in the paper
+    std::vector<ImageGroup> groups;
+    for (const LabelledScene& scene : scenes.empty() ? Scenes{embedded_scene("centre")} : scenes) {
+        const Ensemble ensemble = ensemble_of(lab, scene, size);
+        groups.push_back({"views of " + scene.label,
+                          fmt::format("{} views of {}, of the seeds 1..{}, as in Fig. 8.", ensemble.views.size(),
+                                      scene.label, ensemble.views.size()),
+                          ensemble.views});
+    }
+    if (!scenes.empty()) return groups;
+    ImageGroup random{"random scenes",
+                      fmt::format("{} random scenes of {} to {} spheres, `raya generate random`, of the "
+                                  "seeds 1..{}.",
+                                  kMostViews, kFewest, kMost, kMostViews),
+                      {}};
+    for (int i = 1; i <= static_cast<int>(kMostViews); ++i) {
+        const int spheres = kFewest + (i - 1) % (kMost - kFewest + 1);
+        random.pictures.push_back(&lab.costs(
+            {fmt::format("random-{}, seed {}", spheres, i), generate_random(spheres, static_cast<std::uint64_t>(i))},
+            size));
+    }
+    groups.push_back(std::move(random));
+    return groups;
+}
+
+}  // namespace
 
 StudyPage study_images(Laboratory& lab, const Scenes& scenes) {
     const std::uint32_t size = lab.size(256);
@@ -154,7 +261,7 @@ StudyPage study_images(Laboratory& lab, const Scenes& scenes) {
     for (const std::uint32_t side : {size, 2 * size})
         for (const LabelledScene& scene : scenes.empty() ? paper_like_scenes() : scenes)
             images.push_back(&lab.costs(scene, side));
-    return images_page(size, images);
+    return images_page(size, images, groups_of(lab, scenes, size));
 }
 
 }  // namespace raya

@@ -20,6 +20,10 @@ struct SpreadOffsets {
 };
 SpreadOffsets well_spread_offsets(std::uint32_t side, std::uint32_t reference);
 
+/// Whether each n x n block of pixels, wherever it lies, has no two pixels of one PE; with N = n n PEs it then has one
+/// of each, as on n x n PEs of which each has every n-th pixel of every n-th line.
+bool shares_blocks(std::uint32_t offset, std::uint32_t side, std::uint32_t n);
+
 /// Rank of each value, 1 for the least; equal ones share the mean of their ranks.
 std::vector<double> ranks_of(const std::vector<double>& values);
 

@@ -5,6 +5,8 @@
 
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"
+#include "host/study/ensemble.hpp"
+#include "host/study/paper.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
@@ -69,6 +71,28 @@ Rows rows_of(const CostImage& image) {
             rows.back().of[way] = static_load(image, mapping_of(way, image.width, pes)).efficiency;
     }
     return rows;
+}
+
+// Of one number of PEs in many pictures: the efficiency of each mapping, and that over the 2-D mapping's.
+struct MeanRow {
+    std::uint32_t pes;
+    Estimate bound;
+    std::array<Estimate, kWays> of, beside_2d;
+};
+
+std::vector<MeanRow> means_of(const std::vector<Rows>& pictures) {
+    std::vector<MeanRow> means;
+    for (std::size_t n = 0; n < pictures.front().size(); ++n) {
+        MeanRow mean{
+            pictures.front()[n].pes, mean_of_each(pictures, [n](const Rows& rows) { return rows[n].bound; }), {}, {}};
+        for (int way = 0; way < kWays; ++way) {
+            mean.of[way] = mean_of_each(pictures, [=](const Rows& rows) { return rows[n].of[way]; });
+            mean.beside_2d[way] =
+                mean_of_each(pictures, [=](const Rows& rows) { return rows[n].of[way] / rows[n].of[kGrid]; });
+        }
+        means.push_back(mean);
+    }
+    return means;
 }
 
 // The last P up to which the efficiency has been kHalf or more, and the speed-up there; 0: never.
@@ -141,11 +165,52 @@ std::string finding_of_2d(const Rows& between) {
         if (kept(way).size() > kept(best).size()) best = way;
     const std::vector<int> others = {kFixed, kRoot, kLike, kColumns, kRandom};
     return fmt::format(
-        "More PEs than pixels a side, where the paper asks for 2-D \"or the like\": of {} such arrays 2-D is kept up "
+        "More PEs than pixels a side, where Kohata & Ito ask for 2-D \"or the like\": of {} such arrays 2-D is kept up "
         "with on ({}). {}",
         between.size(),
         joined(others, "; ", [&](int way) { return fmt::format("{}: {}", kLabels[way], kept(way).size()); }),
         need_of_2d(kLabels[best], each(kept(best), &Row::pes), between.size()));
+}
+
+// The cyclic mappings on more PEs than columns, over many pictures. 2-D is needed where none of them keeps up on any
+// array; it is not where one keeps up on all.
+Claim claim_of_2d(const std::vector<MeanRow>& between, std::size_t pictures) {
+    bool none = true;
+    int best = kFixed;
+    double best_least = 0;
+    for (const int way : {kFixed, kRoot, kLike}) {
+        double low = 1e9;
+        for (const MeanRow& row : between) {
+            none = none && row.beside_2d[way].high() < kClose;
+            low = std::min(low, row.beside_2d[way].low());
+        }
+        if (low > best_least) best = way, best_least = low;
+    }
+    const MeanRow& worst = least(between, [&](const MeanRow& row) { return row.beside_2d[best].mean; });
+    return {paper::kSpa, "conclusions", "More PEs than pixels a side need 2-D or the like.",
+            verdict_of(none, best_least >= kClose),
+            finding("scale", "2-D", "pictures"_a = pictures, "arrays"_a = between.size(), "best"_a = kLabels[best],
+                    "worst"_a = with_interval(worst.beside_2d[best], 2), "pes"_a = worst.pes, "close"_a = kClose)};
+}
+
+StudyTable table_of_means(const std::vector<MeanRow>& means) {
+    std::vector<Column<MeanRow>> columns = {{"P", &MeanRow::pes},
+                                            {"upper bound", [](const MeanRow& row) { return row.bound.mean; }}};
+    for (int way = 0; way < kFixedBlock; ++way) {
+        columns.push_back({kLabels[way], [way](const MeanRow& row) { return row.of[way].mean; }});
+        columns.push_back(
+            {std::string(kLabels[way]) + ", +-", [way](const MeanRow& row) { return row.of[way].half_width; }});
+    }
+    return table_of("scale-views", "Efficiency for each number of PEs, mean of the pictures", means, columns, false);
+}
+
+StudyPlot plot_of_means(const std::vector<MeanRow>& means, std::size_t pictures) {
+    StudyPlot plot{"scale-views", fmt::format("Efficiency against the number of PEs, mean of {} pictures", pictures),
+                   "PEs", "efficiency", Axes::kLogX};
+    for (int way = 0; way < kFixedBlock; ++way)
+        plot.series.push_back(
+            line_with_bars(kLabels[way], means, &MeanRow::pes, [way](const MeanRow& row) { return row.of[way]; }));
+    return plot;
 }
 
 // With s = P / W rows from one row of a PE to its next, p shifts these by s p columns: not at all for multiples of W.
@@ -178,11 +243,11 @@ std::vector<Comparison> comparisons_of(const Rows& rows, std::uint32_t side, dou
 std::string need_of_2d(const std::string& best, const std::vector<std::uint32_t>& kept, std::size_t sizes) {
     if (kept.size() == sizes)
         return fmt::format("So it does not take 2-D, but it takes \"the like\": {}, its rows shared, is enough.", best);
-    if (kept.empty()) return "So it does take 2-D, as the paper says.";
+    if (kept.empty()) return "So it does take 2-D, as Kohata & Ito say.";
     return fmt::format("So it does not always take 2-D: {} does for P = {}.", best, fmt::join(kept, ", "));
 }
 
-StudyPage scale_page(const std::string& scene, const CostImage& image) {
+StudyPage scale_page(const std::string& scene, const CostImage& image, const std::vector<const CostImage*>& views) {
     const std::uint32_t side = image.width;
     const Rows rows = rows_of(image);
     const Rows between = where(rows, [&](const Row& row) { return row.pes > side && row.pes < side * side; });
@@ -192,7 +257,12 @@ StudyPage scale_page(const std::string& scene, const CostImage& image) {
     const double most = static_cast<double>(side) * side / largest;
     StudyPage page = page_about(
         "scale",
-        {{"scene", scene}, {"size", side}, {"pes", each(rows, &Row::pes)}, {"offset", kOffset % side}, {"seed", 1}},
+        {{"scene", scene},
+         {"size", side},
+         {"pes", each(rows, &Row::pes)},
+         {"offset", kOffset % side},
+         {"seed", 1},
+         {"views", views.size()}},
         {{"fewest", rows.front().pes}, {"most", rows.back().pes}, {"close", fmt::format("{:.0f}", 100 * kClose)}});
     page.comparisons = comparisons_of(rows, side, most);
     page.findings = {
@@ -203,12 +273,23 @@ StudyPage scale_page(const std::string& scene, const CostImage& image) {
             largest, most, 1 / largest)};
     page.tables = tables_of(rows);
     page.plots = plots_of(rows);
+    page.news = {sentence("scale", "news")};
+    if (views.size() < 2) return page;
+    const auto pictures = each(views, [](const CostImage* view) { return rows_of(*view); });
+    const auto means = means_of(pictures);
+    page.claims = {claim_of_2d(
+        where(means, [&](const MeanRow& row) { return row.pes > side && row.pes < side * side; }), pictures.size())};
+    page.tables.push_back(table_of_means(means));
+    page.plots.push_back(plot_of_means(means, pictures.size()));
     return page;
 }
 
 StudyPage study_scale(Laboratory& lab, const Scenes& scenes) {
     const LabelledScene scene = one_of(scenes);
-    return scale_page(scene.label, lab.costs(scene, lab.size(1024)).trace);
+    constexpr std::size_t kViews = 8;
+    const Ensemble ensemble = ensemble_of(lab, scene, lab.size(1024), AntialiasMethod::kNone, kViews);
+    return scale_page(scene.label, ensemble.picture->trace,
+                      each(ensemble.views, [](const Costs* costs) { return &costs->trace; }));
 }
 
 }  // namespace raya

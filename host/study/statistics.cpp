@@ -26,23 +26,22 @@ double student_probability(double t, std::size_t freedom) {
     return odd ? 2 / std::numbers::pi * (angle + sine * sum) : sine * sum;
 }
 
-double student_t95(std::size_t freedom) {
-    constexpr double kLevel = 0.95;
-    double low = 0, high = 16;  // of one degree of freedom it is 12.706, of more less
-    for (int i = 0; i < 60; ++i) {
+double student_t(double confidence, std::size_t freedom) {
+    double low = 0, high = 1e5;  // of one degree of freedom it is 2 / (pi (1 - confidence)), of more less
+    for (int i = 0; i < 80; ++i) {
         const double middle = (low + high) / 2;
-        (student_probability(middle, freedom) < kLevel ? low : high) = middle;
+        (student_probability(middle, freedom) < confidence ? low : high) = middle;
     }
     return (low + high) / 2;
 }
 
-Estimate estimate_of(const std::vector<double>& values) {
+Estimate estimate_of(const std::vector<double>& values, double confidence) {
     Estimate estimate{mean_of(values), 0, values.size()};
     if (values.size() < 2) return estimate;
     double squares = 0;
     for (const double value : values) squares += (value - estimate.mean) * (value - estimate.mean);
     const auto n = static_cast<double>(values.size());
-    estimate.half_width = student_t95(values.size() - 1) * std::sqrt(squares / (n - 1) / n);
+    estimate.half_width = student_t(confidence, values.size() - 1) * std::sqrt(squares / (n - 1) / n);
     return estimate;
 }
 

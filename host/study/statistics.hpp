@@ -5,7 +5,7 @@
 
 namespace raya {
 
-/// The mean of independent measurements and the half width of its 95 % confidence interval.
+/// The mean of independent measurements and the half width of its confidence interval, of 95 % mostly.
 struct Estimate {
     double mean = 0;
     double half_width = 0;  // 0 where there is but one measurement: nothing is known of how they scatter
@@ -16,15 +16,22 @@ struct Estimate {
     bool has_interval() const { return count > 1; }
 };
 
-/// By Student's t distribution: exact for measurements that scatter normally. One at least.
-Estimate estimate_of(const std::vector<double>& values);
+/// By Student's t distribution: exact for measurements that scatter normally. One at least. Another `confidence` than
+/// 95 % is for intervals that are to hold all at once.
+Estimate estimate_of(const std::vector<double>& values, double confidence = 0.95);
+
+/// That of each of n intervals, if all n are to hold together with 95 % (Bonferroni).
+inline double each_of(std::size_t n) { return 1 - 0.05 / static_cast<double>(n); }
 
 /// The probability that |t| of Student's distribution with so many degrees of freedom, 1 at least, is at most `t` >= 0
 /// (Abramowitz & Stegun 1964, 26.7.3 and 26.7.4).
 double student_probability(double t, std::size_t freedom);
 
-/// The t for which that probability is 95 %.
-double student_t95(std::size_t freedom);
+/// The t for which that probability is `confidence`, below 1 by 1e-5 or more.
+double student_t(double confidence, std::size_t freedom);
+
+/// ... 95 %.
+inline double student_t95(std::size_t freedom) { return student_t(0.95, freedom); }
 
 /// The exponent e for which c x^e lies nearest to y, by least squares of the logarithms; all above zero, two different
 /// x at least.

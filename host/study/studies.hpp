@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/study/accel_run.hpp"
+#include "host/study/ensemble.hpp"
 #include "host/study/grid_run.hpp"
 #include "host/study/laboratory.hpp"
 #include "host/study/page.hpp"
@@ -33,19 +34,31 @@ StudyFunction study_fig7, study_fig8, study_fig9, study_table2, study_table3, st
     study_images;
 
 /// Fig. 9: speed-up against the number of PEs, 1 to one for each column of a square image of 16 pixels a side or more.
-StudyPage speedup_page(const std::string& scene, const CostImage& image);
+/// `views`: other pictures of its size. `sizes`: the scene in several sizes.
+StudyPage speedup_page(const std::string& scene, const CostImage& image,
+                       const std::vector<const CostImage*>& views = {},
+                       const std::vector<const CostImage*>& sizes = {});
 
-/// `images`: one at least, of `pes` columns or more, in the order of the table.
-StudyPage images_page(std::uint32_t pes, const std::vector<const Costs*>& images);
+/// Pictures of one kind, and how they were made, a sentence.
+struct ImageGroup {
+    std::string label, method;
+    std::vector<const Costs*> pictures;
+};
+
+/// `images`: one at least, of `pes` columns or more, in the order of the table. `more`: many pictures of a kind.
+StudyPage images_page(std::uint32_t pes, const std::vector<const Costs*>& images,
+                      const std::vector<ImageGroup>& more = {});
 
 // Beyond the paper.
 StudyFunction study_lattice, study_scale, study_static_vs_dynamic, study_best_offset;
 
-/// `scenes`: square images of one size, 16 pixels a side or more, one at least.
-StudyPage lattice_page(const std::vector<const Costs*>& scenes);
+/// `scenes`: square images of one size, 16 pixels a side or more, one scene at least; one without views stands for
+/// itself.
+StudyPage lattice_page(const std::vector<Ensemble>& scenes);
 
-/// 16, 32, .. PEs, up to one for each pixel of a square image of 16 pixels a side or more.
-StudyPage scale_page(const std::string& scene, const CostImage& image);
+/// 16, 32, .. PEs, up to one for each pixel of a square image of 16 pixels a side or more. `views`: other pictures of
+/// its size, two at least, or none.
+StudyPage scale_page(const std::string& scene, const CostImage& image, const std::vector<const CostImage*>& views = {});
 
 /// Whether more PEs than columns take 2-D: `kept` are the numbers of PEs, of `sizes` that there are, on which the
 /// mapping called `best` keeps up with it.

@@ -133,7 +133,7 @@ TEST_CASE("scale concludes on 2-D from what keeps up with it", "[study]") {
     CHECK(need_of_2d("p", {32, 64}, 2) ==
           "So it does not take 2-D, but it takes \"the like\": p, its rows shared, is enough.");
     CHECK(need_of_2d("p", {64}, 2) == "So it does not always take 2-D: p does for P = 64.");
-    CHECK(need_of_2d("p", {}, 2) == "So it does take 2-D, as the paper says.");
+    CHECK(need_of_2d("p", {}, 2) == "So it does take 2-D, as Kohata & Ito say.");
     CHECK(says(scale_page("even", even_costs(16)), "of 3 such arrays 2-D is kept up with on (p = 16: 3; "));
 }
 
@@ -154,11 +154,31 @@ TEST_CASE("where an offset cancels out the loads are the column split's", "[stud
     CHECK(says(scale_page("even", even_costs(17)), "No offset here falls back"));
 }
 
+TEST_CASE("whether 2-D is needed is judged over many pictures", "[study]") {
+    const CostImage even = even_costs(16);
+    CHECK(scale_page("even", even).claims.empty());
+    const StudyPage page = scale_page("even", even, {&even, &even, &even});
+    check_page(page);
+    CHECK(page.claims.at(0).verdict == ClaimVerdict::kNotReproduced);  // every mapping is as good
+    CostImage columns = even;  // a dear column: its PEs have all of it, whatever the turns, while a grid spreads it
+    for (std::uint32_t row = 0; row < 16; ++row)
+        for (const std::uint32_t column : {0u, 1u, 2u, 3u}) columns.cycles[row * 16 + column] = 1000;
+    const StudyPage other = scale_page("columns", columns, {&columns, &columns, &columns});
+    CHECK(other.table("scale-views").rows.size() == 5);
+    for (std::size_t row = 0; row < 5; ++row)
+        CHECK(other.value("scale-views", row, "p = 16") == Approx(other.value("scale", row, "p = 16")));
+}
+
 TEST_CASE("study scale takes the costs of the scene that is named", "[study]") {
     Session session(choose_device(""));
     Laboratory lab(session, 32);
     const LabelledScene glass = embedded_scene("glass");
-    CHECK(page_json(study_scale(lab, {glass})).dump() == page_json(scale_page("glass", lab.costs(glass, 32).trace)).dump());
+    const Ensemble ensemble = ensemble_of(lab, glass, 32, AntialiasMethod::kNone, 8);
+    std::vector<const CostImage*> views;
+    for (const Costs* costs : ensemble.views) views.push_back(&costs->trace);
+    CHECK(views.size() == 8);
+    CHECK(page_json(study_scale(lab, {glass})).dump() ==
+          page_json(scale_page("glass", lab.costs(glass, 32).trace, views)).dump());
     CHECK(read_back(study_scale(lab, {}).settings)["scene"] == "centre");
 }
 

@@ -21,6 +21,14 @@ TEST_CASE("Student's t at 95 % is the one in tables", "[statistics]") {
     CHECK(student_t95(100'000) == Approx(1.95996).margin(1e-4));  // the normal distribution's
 }
 
+TEST_CASE("Student's t of other levels is the one in tables too", "[statistics]") {
+    CHECK(student_t(0.99, 1) == Approx(63.657).margin(1e-2));
+    CHECK(student_t(0.99, 10) == Approx(3.169).margin(1e-3));
+    CHECK(student_t(0.999, 30) == Approx(3.646).margin(1e-3));
+    CHECK(each_of(10) == Approx(0.995));
+    CHECK(estimate_of({2, 4, 4, 6}, 0.99).half_width == Approx(5.841 * std::sqrt(8.0 / 3 / 4)).epsilon(1e-3));
+}
+
 TEST_CASE("the probability within t runs from 0 to 1, and is the arc tangent's for one degree of freedom",
           "[statistics]") {
     for (std::size_t freedom = 1; freedom < 40; ++freedom) {

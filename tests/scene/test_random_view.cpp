@@ -1,0 +1,59 @@
+// Random views: where the camera may stand, evenly, and that nothing else changes.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "host/scene/generate.hpp"
+#include "host/scene/random_view.hpp"
+#include "host/scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
+
+TEST_CASE("a random view keeps distance, target, angle and scene, and looks from above", "[view]") {
+    SplitMix random(3);
+    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+        Scene scene = generate_random(3, seed);
+        const auto any = [&] { return random.uniform(-5, 5); };
+        scene.view.from = {any(), any(), any()};
+        scene.view.at = {any(), any(), any()};
+        scene.view.up = {any(), any(), any()};
+        CAPTURE(seed);
+        Scene seen = random_view(scene, seed);
+        const Vec3 arm = seen.view.from - seen.view.at;
+        CHECK(arm.length() == Approx((scene.view.from - scene.view.at).length()).epsilon(1e-5));
+        const double height = arm.normalized().dot(scene.view.up.normalized());
+        CHECK(height > sine(kLowestView) - 1e-5);
+        CHECK(height < sine(kHighestView) + 1e-5);
+        CHECK(random_view(scene, seed) == seen);
+        seen.view.from = scene.view.from;
+        CHECK(seen == scene);
+    }
+}
+
+TEST_CASE("random views are even over the zone of the sphere", "[view]") {
+    const Scene scene = generate_centre();
+    constexpr int kViews = 4000, kParts = 8;
+    int heights[kParts] = {}, azimuths[kParts] = {};
+    std::set<double> all;
+    for (std::uint64_t seed = 1; seed <= kViews; ++seed) {
+        const View view = random_view(scene, seed).view;
+        const Vec3 d = (view.from - view.at).normalized();
+        all.insert(d.x);
+        const double part = (d.z - sine(kLowestView)) / (sine(kHighestView) - sine(kLowestView));
+        const double turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
+        ++heights[std::min(kParts - 1, std::max(0, static_cast<int>(part * kParts)))];
+        ++azimuths[std::min(kParts - 1, static_cast<int>(turn * kParts))];
+    }
+    CHECK(all.size() > kViews * 0.99);
+    for (int i = 0; i < kParts; ++i) {  // 500 expected, standard deviation 21
+        CHECK(std::abs(heights[i] - kViews / kParts) < 100);
+        CHECK(std::abs(azimuths[i] - kViews / kParts) < 100);
+    }
+}
+
+}  // namespace
+}  // namespace raya
