@@ -18,8 +18,12 @@ struct Choice {
     std::uint32_t size = 0, pes = 0, root = 0;  // root: round(sqrt(P)) modulo W, the paper's best
     AntialiasMethod method = AntialiasMethod::kNone;
     std::vector<OffsetTime> times = {};
-    OffsetTime best = {}, best_near = {};  // of all offsets, of 0..root
+    OffsetTime best = {}, best_near = {};             // of all offsets, of 0..root
+    std::vector<std::uint32_t> best_of_factors = {};  // the best offsets for factors of 1 to 8, each once
 
+    std::string factors() const {
+        return joined(best_of_factors, ", ", [](std::uint32_t p) { return p; });
+    }
     std::string antialias() const { return antialias_name(method); }
     std::string method_text() const {
         return method == AntialiasMethod::kNone ? "without anti-aliasing" : "with --antialias " + antialias();
@@ -32,6 +36,12 @@ struct Choice {
 // Of one scene: numbers of PEs in order, the methods for each. The array with as many PEs as columns comes first.
 using Choices = std::vector<Choice>;
 
+// The best offset, were computing so many times as dear.
+const OffsetTime& best_by(const std::vector<OffsetTime>& times, double dearer) {
+    return least(times,
+                 [=](const OffsetTime& time) { return time.ring_ms + dearer * (time.total_ms() - time.ring_ms); });
+}
+
 Choices choices_of(Laboratory& lab, const LabelledScene& scene) {
     const std::uint32_t size = lab.size(usual_size(scene.scene));
     const Costs& costs = lab.costs(scene, size, AntialiasMethod::kSupersample);
@@ -40,9 +50,16 @@ Choices choices_of(Laboratory& lab, const LabelledScene& scene) {
         if (!all.empty() && (pes == size || pes > size * size)) continue;
         for (const AntialiasMethod method :
              {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
-            Choice choice{scene.label, format_name(format_for(scene.scene)), size, pes, root_offset(pes) % size,
-                          method,      offset_times(costs, pes, method)};
+            Choice choice{scene.label,
+                          format_name(format_for(scene.scene)),
+                          size,
+                          pes,
+                          root_offset(pes) % size,
+                          method,
+                          offset_times(costs, pes, method, machine_factor().value)};
             choice.best = least(choice.times, &OffsetTime::total_ms);
+            choice.best_of_factors = distinct(
+                kFactors, [&](double factor) { return best_by(choice.times, factor / machine_factor().value).offset; });
             choice.best_near = least(std::span(choice.times).first(choice.root + 1), &OffsetTime::total_ms);
             all.push_back(std::move(choice));
         }
@@ -70,9 +87,9 @@ std::string choice_finding(const Choice& c) {
     const double total = c.best.total_ms();
     return fmt::format(
         "{}, {} PEs, {}: p = {} takes {:.1f} ms, {:.1f} % of it on the ring, u of the first pass {:.3f}; {}; {}p = 0 "
-        "takes {:.1f} % longer.",
+        "takes {:.1f} % longer; the best for factors of 1 to 8: p = {}.",
         c.scene, c.pes, c.method_text(), c.best.offset, total, total > 0 ? 100 * c.best.ring_ms / total : 0,
-        c.best.imbalance, near, root, c.loss(c.times[0]));
+        c.best.imbalance, near, root, c.loss(c.times[0]), c.factors());
 }
 
 // Every offset of a choice.
@@ -88,12 +105,13 @@ std::vector<StudyTable> tables_of(const Choices& choices) {
     const auto of = [](auto figure) { return [=](const Tried& tried) { return std::invoke(figure, *tried.time); }; };
     const auto best = [](auto figure) { return [=](const Choice& c) { return std::invoke(figure, c.best); }; };
     const auto near = [](auto figure) { return [=](const Choice& c) { return std::invoke(figure, c.best_near); }; };
-    return {table_of(kName, "Best offsets, modelled, nothing fitted", choices,
+    return {table_of(kName, "Best offsets, modelled", choices,
                      {{"scene", &Choice::scene},
                       {"size", &Choice::size},
                       {"PEs", &Choice::pes},
                       {"anti-aliasing", &Choice::antialias},
                       {"best p", best(&OffsetTime::offset)},
+                      {"best p, factors 1 to 8", &Choice::factors},
                       {"time", best(&OffsetTime::total_ms), "ms"},
                       {"of it ring", best(&OffsetTime::ring_ms), "ms"},
                       {"u, first pass", best(&OffsetTime::imbalance)},
@@ -142,12 +160,14 @@ StudyPage study_best_offset(Laboratory& lab, const Scenes& given) {
     for (const Choices& scene : scenes)
         settings["scenes"].push_back(
             {{"scene", scene[0].scene}, {"size", scene[0].size}, {"format", scene[0].format}, {"fold", "cyclic"}});
+    settings["factor"] = machine_factor().value;
     StudyPage page = page_about(kName, settings);
+    page.clock = clock_text();
+    page.news = {sentence(kName, "news")};
     for (const Choice& c : scenes.front())
-        page.comparisons.push_back({fmt::format("best p, {} PEs, {}", c.pes, c.antialias()), "", std::nullopt,
-                                    double(c.best.offset),
-                                    fmt::format("u of the first pass {:.3f}; the paper's rule, sqrt(P), is p = {}",
-                                                c.best.imbalance, c.root)});
+        page.comparisons.push_back(
+            {fmt::format("best p, {} PEs, {}", c.pes, c.antialias()), "", std::nullopt, double(c.best.offset),
+             fmt::format("u of the first pass {:.3f}; sqrt(P), Kohata & Ito's, is p = {}", c.best.imbalance, c.root)});
     for (const Choices& scene : scenes) page.findings.push_back(chief_finding(scene));
     for (const Choice& choice : all) page.findings.push_back(choice_finding(choice));
     page.tables = tables_of(all);

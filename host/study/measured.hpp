@@ -11,17 +11,18 @@
 namespace raya {
 
 struct Measured {
-    double min_ms = 0, median_ms = 0;
+    double min_ms = 0, median_ms = 0, max_ms = 0;
     int runs = 0;
 };
 
-/// The least and the median of what was measured, seconds; one at least.
+/// The least, the median and the largest of what was measured, seconds; one at least.
 Measured measured_of(std::vector<double> seconds);
 
 /// Mean seconds of one call, of as many as take 20 ms together: what lasts less, clock and launch would count in.
 double sample_seconds(const std::function<double()>& seconds);
 
-/// Of the seconds that up to `runs` calls tell, one at least; no further call once `enough_s` seconds of them are told.
+/// Of the seconds that up to `runs` calls tell, one at least; no further call once `enough_s` seconds of them are told. A
+/// call before them warms caches and driver up and does not count, unless it alone takes that long.
 Measured measure(int runs, double enough_s, const std::function<double()>& seconds);
 
 /// The double-precision reference on one thread; up to three runs.

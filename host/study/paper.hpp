@@ -9,7 +9,7 @@ namespace raya::paper {
 
 // Whom a claim is of, as pages name them.
 inline constexpr const char *kSpa = "Kohata & Ito 1993", *kTp = "Yoshitani & Yamazaki, about 1995",
-                            *kGrid = "Havran & Sixta 1999";
+                            *kGrid = "Havran & Sixta 1999", *kDynamic = "Heirich & Arvo 1998";
 
 // Kohata & Ito 1993, up to the rotation.
 inline constexpr double kPes = 256, kSize = 256;
@@ -43,6 +43,7 @@ inline constexpr double kEfficiency0 = 0.388;
 inline constexpr double kEfficiency16 = 0.895;
 inline constexpr double kCapRatio = 3.86;           // beside Fig. 9: CAP, 256 PEs over 64
 inline constexpr double kPixelMachineSpeedup = 60;  // beside Fig. 9: 64 nodes, "60 or more"
+inline constexpr double kExchangeSetupMs = 1.375;   // [D] Table 4: 2 - 2 x 0.3125 = 12 - 34 x 0.3125
 inline constexpr double kRotationMs = 0.3125;       // [D] Tables 3 and 4: 10 ms for 32 rotations
 
 // [D] Yoshitani & Yamazaki, about 1995, Table 1: scalars of a ray packet, beside data for the search and of the object.

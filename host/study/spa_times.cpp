@@ -61,13 +61,12 @@ SpaRun run_on_spa(Session& session, const LabelledScene& scene, std::uint32_t si
 }
 
 ModelledTime spa_time(const SpaRun& run, double factor) {
-    return modelled_time(machine_named("spa"), run.phases, run.communication, factor, run.smoothing).value();
-}
-
-double fitted_factor(const CostImage& trace) {
-    constexpr double kPaperPixelMs = paper::kOnePeComputeMs / (paper::kSize * paper::kSize);
-    const auto pixels = static_cast<double>(trace.cycles.size());
-    return kPaperPixelMs * pixels / spa_ms(static_cast<double>(total_cycles(trace)));
+    ModelledTime time =
+        modelled_time(machine_named("spa"), run.phases, run.communication, factor, run.smoothing).value();
+    if (run.communication.rotations == 0) return time;
+    time.communication_ms += paper::kExchangeSetupMs;
+    time.total_ms += paper::kExchangeSetupMs;
+    return time;
 }
 
 std::string offset_name(std::uint32_t offset) { return fmt::format("p = {}", offset); }
@@ -84,7 +83,7 @@ std::uint64_t neighbour_rotations(const raya_mapping& mapping) {
     return turns;
 }
 
-std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, AntialiasMethod method) {
+std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, AntialiasMethod method, double factor) {
     const std::uint32_t width = costs.trace.width, height = costs.trace.height;
     const Machine& spa = machine_named("spa");
     std::vector<std::uint32_t> offsets(width);
@@ -94,36 +93,49 @@ std::vector<OffsetTime> offset_times(const Costs& costs, std::uint32_t pes, Anti
     if (method == AntialiasMethod::kSupersample) again.emplace(costs.supersample, pes, offsets);
     std::vector<OffsetTime> times;
     for (const std::uint32_t p : offsets) {
-        OffsetTime time{.offset = p, .imbalance = first.imbalance[p], .trace_ms = first.largest_ms(p)};
-        if (again) time.supersample_ms = again->largest_ms(p);
+        OffsetTime time{.offset = p, .imbalance = first.imbalance[p], .trace_ms = factor * first.largest_ms(p)};
+        if (again) time.supersample_ms = factor * again->largest_ms(p);
         if (method != AntialiasMethod::kNone) {
             const raya_mapping mapping = cyclic(width, height, pes, p);
             const std::uint32_t share = largest_share(mapping);
             const SmoothingCycles cycles = smoothing_cycles(method, share);
-            time.smooth_ms = spa_ms(static_cast<double>(cycles.filter + cycles.compare));
+            time.smooth_ms = factor * spa_ms(static_cast<double>(cycles.filter + cycles.compare));
             time.rotations = neighbour_rotations(mapping);
             const double words_ms = 1e3 * static_cast<double>(kPixelWords * share) / spa.link_words_per_s.value();
-            time.ring_ms = static_cast<double>(time.rotations) * (spa.rotation_sync_ms.value() + words_ms);
+            time.ring_ms = paper::kExchangeSetupMs +
+                           static_cast<double>(time.rotations) * (spa.rotation_sync_ms.value() + words_ms);
         }
         times.push_back(time);
     }
     return times;
 }
 
+SmoothingRuns SmoothingRuns::by_factor(double factor) const {
+    SmoothingRuns other = *this;
+    for (SmoothedOffset& row : other.rows) row.factor = factor;
+    return other;
+}
+
+std::vector<OffsetTime> SmoothingRuns::near(double factor) const {
+    std::vector<OffsetTime> some = times(factor);
+    some.resize(std::min<std::size_t>(17, some.size()));
+    return some;
+}
+
 SmoothingRuns smoothing_runs(Laboratory& lab, const Scenes& scenes, AntialiasMethod method) {
-    SmoothingRuns study{.scene = one_of(scenes), .size = lab.size(256)};
-    Costs costs;
+    SmoothingRuns study;
+    study.scene = one_of(scenes);
+    study.size = lab.size(256);
+    study.method = method;
     for (const std::uint32_t p : {0u, 8u, 16u}) {
         const std::uint32_t offset = p % study.size;
-        const SpaRun run = run_on_spa(lab.session(), study.scene, study.size, study.size, offset, method);
-        study.factor = fitted_factor(run.cost.front());
-        study.recomputed = static_cast<double>(run.recomputed) / static_cast<double>(run.pixels);
-        study.rows.push_back({offset, run.communication.rotations, spa_time(run), spa_time(run, study.factor),
-                              run.phases.front(), run.phases.back()});
-        costs.trace = run.cost.front();
-        costs.supersample = run.cost.back();
+        study.rows.push_back({offset, run_on_spa(lab.session(), study.scene, study.size, study.size, offset, method),
+                              machine_factor().value});
     }
-    study.times = offset_times(costs, study.size, method);
+    const SpaRun& run = study.last().run;
+    study.recomputed = static_cast<double>(run.recomputed) / static_cast<double>(run.pixels);
+    study.costs.trace = run.cost.front();
+    study.costs.supersample = run.cost.back();
     return study;
 }
 

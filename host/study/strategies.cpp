@@ -74,10 +74,10 @@ Outcome run_strategy(const CostImage& image, const Strategy& strategy) {
     return outcome;
 }
 
-std::uint64_t round_trip_cycles(const Machine& machine) {
+std::uint64_t round_trip_cycles(const Machine& machine, double factor) {
     constexpr double kWords = 1 + 2;
     const double ms = 2 * machine.rotation_sync_ms.value() + 1e3 * kWords / machine.link_words_per_s.value();
-    return static_cast<std::uint64_t>(std::llround(1e6 * ms / machine.cycle_ns.value()));
+    return static_cast<std::uint64_t>(std::llround(1e6 * ms / (factor * machine.cycle_ns.value())));
 }
 
 }  // namespace raya

@@ -37,9 +37,10 @@ struct Outcome {
 /// `image`: of the size that the strategy was made for.
 Outcome run_strategy(const CostImage& image, const Strategy& strategy);
 
-/// Cycles of a PE from a request until its answer is there: a word (its number) to the root and two (first pixel, how
-/// many) back at the links' rate, each way with the synchronisation of a rotation. [?] The SPA never did this; what its
-/// host takes to look a chunk up is left out.
-std::uint64_t round_trip_cycles(const Machine& machine);
+/// Budget cycles of a PE, each `factor` times the machine's cycle (spa_clock.hpp), from a request until its answer is
+/// there: a word (its number) to the root and two (first pixel, how many) back at the links' rate, each way with the
+/// synchronisation of a rotation. [?] The SPA never did this. The synchronisation is what a barrier of all PEs takes
+/// and so the most that one PE's request can; what its host takes to look a chunk up is left out.
+std::uint64_t round_trip_cycles(const Machine& machine, double factor);
 
 }  // namespace raya

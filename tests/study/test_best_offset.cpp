@@ -66,6 +66,27 @@ TEST_CASE("what is recommended takes least of all offsets", "[study]") {
         const raya_mapping m = cyclic(kSize, kSize, pes, static_cast<std::uint32_t>(best));
         CHECK(figure("u, first pass") == Approx(static_load(lab.costs(scene, kSize).trace, m).imbalance).epsilon(1e-9));
     }
+    // The best for each factor of 1 to 8, with nothing to bring from neighbours, is the same.
+    CHECK(table.at(0, "best p, factors 1 to 8").text() == fmt::format("{}", table.at(0, "best p").number()));
+    for (std::size_t i = 0; i < 9; ++i) {  // that of the clock's factor lies between the others
+        const auto pes = static_cast<std::uint32_t>(table.at(i, "PEs").number());
+        const std::string name = table.at(i, "anti-aliasing").text(),
+                          all = table.at(i, "best p, factors 1 to 8").text();
+        const auto method = name == "none"     ? AntialiasMethod::kNone
+                            : name == "filter" ? AntialiasMethod::kFilter
+                                               : AntialiasMethod::kSupersample;
+        std::string expected;
+        for (int factor = 1; factor <= 8; ++factor) {
+            const auto times =
+                offset_times(lab.costs(scene, kSize, AntialiasMethod::kSupersample), pes, method, factor);
+            const std::string one = fmt::format("{}", least(times, &OffsetTime::total_ms).offset);
+            if (("," + expected + ",").find("," + one + ",") == std::string::npos)
+                expected += (expected.empty() ? "" : ",") + one;
+        }
+        std::string compact = all;
+        std::erase(compact, ' ');
+        CHECK(compact == expected);
+    }
     const auto best = [&](const char* method) { return first_least(totals.at({kSize, method}), kSize); };
     CHECK(page.findings.front() ==
           fmt::format("Use --offset {} without anti-aliasing, --offset {} with --antialias filter, --offset {} with "
@@ -77,11 +98,11 @@ TEST_CASE("rotations make a distant offset dear", "[study]") {
     // Every pixel costs the same: no offset balances better, so with the ring the shortest way is best.
     Costs costs;
     costs.trace = {64, 64, std::vector<std::uint64_t>(64 * 64, 1000)};
-    const auto filtered = offset_times(costs, 64, AntialiasMethod::kFilter);
+    const auto filtered = offset_times(costs, 64, AntialiasMethod::kFilter, 1);
     CHECK(least(filtered, &OffsetTime::total_ms).offset == 0);
     CHECK(filtered[32].total_ms() > filtered[16].total_ms());
     CHECK(filtered[16].total_ms() == filtered[48].total_ms());
-    CHECK(least(offset_times(costs, 64, AntialiasMethod::kNone), &OffsetTime::total_ms).offset == 0);
+    CHECK(least(offset_times(costs, 64, AntialiasMethod::kNone, 1), &OffsetTime::total_ms).offset == 0);
 }
 
 TEST_CASE("best-offset takes the scene's own size, and centre where none is named", "[study]") {

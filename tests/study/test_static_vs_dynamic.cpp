@@ -43,7 +43,8 @@ SceneOutcomes by_hand(std::array<double, 2> fixed, std::array<double, 2> hybrid)
 
 TEST_CASE("a round trip on the SPA: two synchronisations and three words", "[study]") {
     // 0.3125 ms - 768 words / 6 Mword/s = 0.1845 ms, twice; 0.5 us. In cycles of 100 ns: 1845 + 1845 + 5.
-    CHECK(round_trip_cycles(machine_named("spa")) == 3695);
+    CHECK(round_trip_cycles(machine_named("spa"), 1) == 3695);
+    CHECK(round_trip_cycles(machine_named("spa"), 6.5) == 568);  // 568.5: fewer cycles, each as much longer
 }
 
 TEST_CASE("strategies are the same by name and kind for every number of PEs, and legal", "[study]") {
@@ -171,6 +172,10 @@ TEST_CASE("the study of static and dynamic distribution is whole", "[study]") {
     CHECK(read_back(page.settings)["pes"] == std::vector<int>{128, 256, 512, 1024});
     CHECK(read_back(page.settings)["scenes"].size() == 3);
     CHECK(page.plots.size() == 6);
+    REQUIRE(page.table("static-vs-dynamic-factors").rows.size() == 3);  // 1, the clock's, 8
+    CHECK(page.value("static-vs-dynamic-factors", 0, "request") == 3695);
+    CHECK(page.value("static-vs-dynamic-factors", 2, "request") == 462);  // 461.9
+    CHECK(page.claims.size() == 2);
     const auto count = strategies(32, 128, 0).size();
     CHECK(page.table("static-vs-dynamic").rows.size() == 3 * 4 * count);
     CHECK(page.table("static-vs-dynamic-1").rows.size() == count + 1);
