@@ -94,6 +94,13 @@ void add_generate_command(CLI::App& program) {
     random->callback(
         [options] { write_scene(*options, [&] { return generate_random(options->count, options->seed); }); });
 
+    CLI::App* cluster = add_kind(*command, *options, "cluster",
+                                 "Seven spheres above a floor, as heavy and uneven as Kohata & Ito's figures have it");
+    add_value(*cluster, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
+        ->type_name("N")
+        ->capture_default_str();
+    cluster->callback([options] { write_scene(*options, [&] { return generate_cluster(options->seed); }); });
+
     CLI::App* centre =
         add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
     centre->callback([options] { write_scene(*options, [&] { return generate_centre(); }); });

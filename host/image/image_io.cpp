@@ -97,6 +97,11 @@ void write_image(const fs::path& path, const Image& image, const ImageAttributes
     write_pixels(path, {image.width, image.height, 3, image.rgb}, attributes);
 }
 
+std::string png_of(const Image& image, const ImageAttributes& attributes) {
+    check_shape(image.width, image.height, 3, image.rgb.size());
+    return encode_png("picture.png", {image.width, image.height, 3, image.rgb}, attributes);
+}
+
 void write_image(const fs::path& path, const GreyImage& image, const ImageAttributes& attributes) {
     check_shape(image.width, image.height, 1, image.values.size());
     check_extension(path, kGreyImageExtensions);

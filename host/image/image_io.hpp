@@ -23,7 +23,10 @@ void check_writable_target(const std::filesystem::path& path, std::span<const st
 /// PFM the floats themselves. Throws UserError with file, reason and remedy, std::logic_error if `image` lacks pixels.
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
 
-/// The same for one number a pixel: EXR (channel Y) or PFM.
+/// The bytes of that PNG file. Throws UserError where there is no encoder, std::logic_error as above.
+std::string png_of(const Image& image, const ImageAttributes& attributes);
+
+/// As write_image() for one number a pixel: EXR (channel Y) or PFM.
 void write_image(const std::filesystem::path& path, const GreyImage& image, const ImageAttributes& attributes);
 
 }  // namespace raya

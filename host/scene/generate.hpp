@@ -25,10 +25,10 @@ Scene generate_balls(int level);
 /// Haines). Throws UserError unless 1 <= size <= 64.
 Scene generate_lattice(int size);
 
-/// size^3 gear wheels in the cube [-1, 1]^3 above one square polygon, in layers whose wheels mesh with their neighbours;
-/// brass, steel, glass and enamel, five lights. A wheel is two outlines of 144 vertices and 144 quadrilaterals, so that
-/// size 4 has as many polygons as SPD's `gears` (E. Haines), 9,345, or 36,610 triangles. The wheels are our own. Throws
-/// UserError unless 1 <= size <= 16.
+/// size^3 gear wheels in the cube [-1, 1]^3 above one square polygon, in layers whose wheels mesh with their
+/// neighbours; brass, steel, glass and enamel, five lights. A wheel is two outlines of 144 vertices and 144
+/// quadrilaterals, so that size 4 has as many polygons as SPD's `gears` (E. Haines), 9,345, or 36,610 triangles. The
+/// wheels are our own. Throws UserError unless 1 <= size <= 16.
 Scene generate_gears(int size);
 
 /// `count` matt spheres in the cube [-1, 1]^3, spread evenly over x * y * z voxels: every voxel holds floor or ceil of
@@ -45,5 +45,21 @@ Scene generate_random(int count, std::uint64_t seed);
 /// glass and mirror spheres crowded about the centre of the image, above a checkered plane that costs little. 256 x
 /// 256.
 Scene generate_centre();
+
+/// What a scene of generate_cluster() is drawn from; lengths in scene units. The figures were found by a search that
+/// scenes/README.md describes.
+struct ClusterShape {
+    int glass = 3, mirrors = 1, matt = 3;  // spheres
+    double radius = 1.6;                   // of the cylinder about the z axis in which the centres lie
+    double height = 2.1;                   // of the highest place for a sphere above that of one that lies on the floor
+    double smallest = 0.4, largest = 0.7;  // radii of spheres
+    double checker = 2.35;                 // side of a square of the floor
+    double angle_degrees = 20;             // of the view
+    int spheres() const { return glass + mirrors + matt; }
+};
+
+/// A cluster of spheres that do not touch, where there is room, above a checkered floor under one light: scenes as
+/// heavy and as uneven as Kohata & Ito's figures have it, by the mean of many seeds. 256 x 256.
+Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape = {});
 
 }  // namespace raya

@@ -36,7 +36,6 @@ double sample_seconds(const std::function<double()>& seconds) {
 }
 
 Measured measure(int runs, double enough_s, const std::function<double()>& seconds) {
-    if (const double cold = seconds(); cold >= enough_s) return measured_of({cold});
     std::vector<double> all = {seconds()};
     while (static_cast<int>(all.size()) < runs && std::accumulate(all.begin(), all.end(), 0.0) < enough_s)
         all.push_back(seconds());
@@ -49,6 +48,7 @@ Measured measure_reference(const LabelledScene& scene, std::uint32_t size) {
                                      .height = static_cast<int>(size),
                                      .bounces = static_cast<int>(machine_named("spa").bounces),
                                      .threads = 1};
+    reference::render(scene.scene, {.width = 32, .height = 32, .bounces = options.bounces, .threads = 1});  // warms up
     return measure(kReferenceRuns, kEnoughS, [&] {
         const Clock::time_point start = Clock::now();
         reference::render(scene.scene, options);
@@ -63,6 +63,7 @@ Measured measure_device(Session& session, const LabelledScene& scene, std::uint3
     settings.bounces = machine_named("spa").bounces;
     settings.mapping = cyclic(size, 16 % size);
     RingRenderer renderer(session, scene.scene, settings);
+    renderer.render();  // warms caches and driver up
     return measure(kDeviceRuns, kEnoughS, [&] { return trace_seconds(renderer.render()); });
 }
 

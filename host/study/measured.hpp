@@ -21,14 +21,14 @@ Measured measured_of(std::vector<double> seconds);
 /// Mean seconds of one call, of as many as take 20 ms together: what lasts less, clock and launch would count in.
 double sample_seconds(const std::function<double()>& seconds);
 
-/// Of the seconds that up to `runs` calls tell, one at least; no further call once `enough_s` seconds of them are told. A
-/// call before them warms caches and driver up and does not count, unless it alone takes that long.
+/// Of the seconds that up to `runs` calls tell, one at least; no further call once `enough_s` seconds of them are told.
 Measured measure(int runs, double enough_s, const std::function<double()>& seconds);
 
-/// The double-precision reference on one thread; up to three runs.
+/// The double-precision reference on one thread; up to three runs, after a small one that does not count.
 Measured measure_reference(const LabelledScene& scene, std::uint32_t size);
 
-/// The kernels on the session's device, in a format; their time alone, up to five runs.
+/// The kernels on the session's device, in a format; their time alone, up to five runs, after
+/// one that does not count.
 Measured measure_device(Session& session, const LabelledScene& scene, std::uint32_t size, const NumberFormat& format);
 
 }  // namespace raya

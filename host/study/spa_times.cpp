@@ -26,6 +26,7 @@ SpaRun run_of(const RingSettings& settings, RingResult result) {
     run.communication = result.communication;
     run.pixels = std::uint64_t{settings.mapping.width} * settings.mapping.height;
     run.recomputed = result.recomputed;
+    run.image = std::move(result.image);
     return run;
 }
 

@@ -22,6 +22,7 @@ struct SpaRun {
     SmoothingCycles smoothing;
     Communication communication;
     std::uint64_t pixels = 0, recomputed = 0;
+    Image image;
 };
 
 /// Renders `size` x `size` pixels on `pes` PEs under the cyclic mapping. Throws UserError, DeviceError as RingRenderer

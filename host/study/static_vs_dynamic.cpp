@@ -1,5 +1,7 @@
 #include "host/study/static_vs_dynamic.hpp"
 
+#include <fmt/format.h>
+
 #include "host/study/laboratory.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/spa_clock.hpp"

@@ -5,7 +5,7 @@
 namespace raya {
 
 std::span<const Study> studies() {
-    static const std::array<Study, 20> all = {{
+    static const std::array<Study, 21> all = {{
         {"fig7", "Load of each PE, column split and cyclic mapping", true, study_fig7},
         {"fig8", "Imbalance against the offset p", true, study_fig8},
         {"fig9", "Speed-up against the number of PEs, both folds, and the mappings of CAP and Pixel Machine", true,
@@ -13,6 +13,7 @@ std::span<const Study> studies() {
         {"table2", "Times of the SPA with 256 PEs and with one, and of this machine", true, study_table2},
         {"table3", "What the 3 x 3 filter costs", true, study_table3},
         {"table4", "What supersampling costs, in both readings of the paper", true, study_table4},
+        {"cluster", "Scenes as heavy as the paper's: its times on one clock, nothing fitted", false, study_cluster},
         {"fig12", "Load of each PE in supersampling", true, study_fig12},
         {"fig13", "Imbalance against the offset p in supersampling", true, study_fig13},
         {"images", "Efficiency of column split and cyclic mapping over ten scenes, two sizes", false, study_images},

@@ -30,8 +30,8 @@ struct Study {
 std::span<const Study> studies();
 
 // Kohata & Ito 1993, figure by figure and table by table.
-StudyFunction study_fig7, study_fig8, study_fig9, study_table2, study_table3, study_table4, study_fig12, study_fig13,
-    study_images;
+StudyFunction study_fig7, study_fig8, study_fig9, study_table2, study_table3, study_table4, study_cluster, study_fig12,
+    study_fig13, study_images;
 
 /// Fig. 9: speed-up against the number of PEs, 1 to one for each column of a square image of 16 pixels a side or more.
 /// `views`: other pictures of its size. `sizes`: the scene in several sizes.

@@ -1,6 +1,8 @@
 // Table 2: what the image takes on the SPA with all its PEs and with one, on one clock, and what it takes here.
 #include <cmath>
 
+#include "host/error.hpp"
+#include "host/image/image_io.hpp"
 #include "host/study/ensemble.hpp"
 #include "host/study/measured.hpp"
 #include "host/study/paper.hpp"
@@ -191,6 +193,16 @@ std::vector<StudyTable> tables_of(const Times& t, const std::string& device) {
                       {"largest", &HostRow::most}})};
 }
 
+// The picture that the array made: beside Fig. 6, whose objects are not printed. None where nothing encodes it.
+std::vector<StudyPicture> pictures_of(const Times& t) try {
+    return {{"table2-picture", fmt::format("{} at {} x {}, as the PEs made it", t.scene, t.size, t.size),
+             t.scene == "centre" ? "glass and mirror spheres crowded in the middle above a checkered plane"
+                                 : "the scene that was named",
+             png_of(t.array.image, {})}};
+} catch (const UserError&) {
+    return {};
+}
+
 }  // namespace
 
 StudyPage study_table2(Laboratory& lab, const Scenes& scenes) {
@@ -210,6 +222,7 @@ StudyPage study_table2(Laboratory& lab, const Scenes& scenes) {
     if (t.in_paper()) page.claims = claims_of(t);
     page.findings = findings_of(t);
     page.tables = tables_of(t, device);
+    page.pictures = pictures_of(t);
     page.news = {sentence("table2", "news")};
     return page;
 }

@@ -289,6 +289,41 @@ TEST_CASE("random: centres in the cube, sensible volume, the seed decides", "[ge
     CHECK(generate_random(1000, 7).surfaces.size() == 12);
 }
 
+TEST_CASE("clusters are seven spheres that do not touch and lie above the floor", "[generate]") {
+    const ClusterShape shape;
+    int apart = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        CAPTURE(seed);
+        const Scene s = generate_cluster(seed);
+        REQUIRE(s.spheres.size() == 7);
+        REQUIRE(s.planes.size() == 1);
+        CHECK(generate_cluster(seed) == s);
+        if (seed > 1) CHECK_FALSE(generate_cluster(seed - 1).spheres == s.spheres);
+        bool touching = false;
+        int glass = 0, mirrors = 0;
+        for (std::size_t i = 0; i < s.spheres.size(); ++i) {
+            const Sphere& sphere = s.spheres[i];
+            CHECK(sphere.radius >= shape.smallest - 1e-9);
+            CHECK(sphere.radius <= shape.largest + 1e-9);
+            CHECK(sphere.centre.z >= sphere.radius - 1e-8);
+            CHECK(sphere.centre.z <= sphere.radius + shape.height + 1e-8);
+            CHECK(std::hypot(sphere.centre.x, sphere.centre.y) <= shape.radius + 1e-8);
+            for (std::size_t other = 0; other < i; ++other)
+                touching = touching || gap(sphere, s.spheres[other]) < -1e-8;
+            const Surface& surface = s.surfaces[static_cast<std::size_t>(sphere.surface)];
+            glass += surface.transmittance > 0;
+            mirrors += surface.transmittance == 0 && surface.specular > 0;
+        }
+        CHECK(glass == shape.glass);
+        CHECK(mirrors == shape.mirrors);
+        apart += !touching;
+    }
+    CHECK(apart >= 297);  // 200 tries nearly always find a place
+    ClusterShape none;
+    none.glass = none.mirrors = none.matt = 0;
+    CHECK(generate_cluster(1, none).spheres.empty());
+}
+
 TEST_CASE("centre: the committed file is what the generator makes", "[generate]") {
     const Scene s = generate_centre();
     CHECK(s.object_count() >= 20);
@@ -303,7 +338,7 @@ TEST_CASE("centre: the committed file is what the generator makes", "[generate]"
 
 TEST_CASE("generated scenes read back equal", "[generate]") {
     for (const Scene& s : {generate_balls(3), generate_lattice(4), generate_gears(2), generate_uniform(100, {3, 3, 3}),
-                           generate_random(100, 1), generate_centre()})
+                           generate_random(100, 1), generate_centre(), generate_cluster(1)})
         CHECK(parse_nff(write_nff(s), s.name) == s);
 }
 

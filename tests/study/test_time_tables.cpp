@@ -83,6 +83,8 @@ TEST_CASE("Table 2's modelled figures follow from the cost image and the rates",
     CHECK(ours("one processor, 64 bits") > 0);
     for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);  // not the paper's size
     CHECK(page.claims.empty());
+    REQUIRE(page.pictures.size() == 1);
+    CHECK(page.pictures[0].png.starts_with("\x89PNG"));
     CHECK(page.clock == clock_text());
     const StudyTable& table = page.table("table2");
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
