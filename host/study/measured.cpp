@@ -42,6 +42,11 @@ Measured measure(int runs, double enough_s, const std::function<double()>& secon
     return measured_of(std::move(all));
 }
 
+Measured measure_warm(int runs, double enough_s, const std::function<double()>& seconds) {
+    seconds();
+    return measure(runs, enough_s, seconds);
+}
+
 Measured measure_reference(const LabelledScene& scene, std::uint32_t size) {
     using Clock = std::chrono::steady_clock;
     const reference::Options options{.width = static_cast<int>(size),
@@ -63,8 +68,7 @@ Measured measure_device(Session& session, const LabelledScene& scene, std::uint3
     settings.bounces = machine_named("spa").bounces;
     settings.mapping = cyclic(size, 16 % size);
     RingRenderer renderer(session, scene.scene, settings);
-    renderer.render();  // warms caches and driver up
-    return measure(kDeviceRuns, kEnoughS, [&] { return trace_seconds(renderer.render()); });
+    return measure_warm(kDeviceRuns, kEnoughS, [&] { return trace_seconds(renderer.render()); });
 }
 
 }  // namespace raya

@@ -24,6 +24,9 @@ double sample_seconds(const std::function<double()>& seconds);
 /// Of the seconds that up to `runs` calls tell, one at least; no further call once `enough_s` seconds of them are told.
 Measured measure(int runs, double enough_s, const std::function<double()>& seconds);
 
+/// The same after a call that does not count: it warms caches and driver up.
+Measured measure_warm(int runs, double enough_s, const std::function<double()>& seconds);
+
 /// The double-precision reference on one thread; up to three runs, after a small one that does not count.
 Measured measure_reference(const LabelledScene& scene, std::uint32_t size);
 
