@@ -37,11 +37,17 @@ TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[
          {"u(0)", "u(8)", "u(16)", "best p of all 32", "no plots", "/nonexistent", "python3-matplotlib", "fig8.md"})
         CHECK_THAT(run.out, Catch::Contains(part));
     const std::filesystem::path folder = outputs / "made/x";
-    CHECK(files_in(folder) == Files{"fig8.csv", "fig8.json", "fig8.md", "index.html"});
+    CHECK(files_in(folder) == Files{"fig8-near.csv", "fig8.csv", "fig8.json", "fig8.md", "index.html"});
     const auto json = Document::parse(file_contents(folder / "fig8.json"));
     CHECK(json["study"] == "fig8");
-    CHECK(json["settings"] == Document{{"scene", "centre"}, {"size", 32}, {"pes", 32}});
-    CHECK(json["tables"][0]["rows"].size() == 32);
+    for (const auto& [key, value] : {std::pair<const char*, Document>{"scene", "centre"},
+                                     {"size", 32},
+                                     {"pes", 32},
+                                     {"views", 64},
+                                     {"view_seeds", "1..64"}})
+        CHECK(json["settings"][key] == value);
+    CHECK(json["tables"][1]["name"] == "fig8");
+    CHECK(json["tables"][1]["rows"].size() == 32);
     CHECK(json["run"]["command"] == "raya study fig8 --size 32 -o DIR");
     CHECK(json["run"]["version"] == RAYA_VERSION);
     CHECK_FALSE(json["run"]["driver"].get<std::string>().empty());
@@ -49,7 +55,7 @@ TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[
     for (const char* part : {"Not drawn: ", "raya study fig8 --size 32 -o DIR", "python3-matplotlib", "</html>"})
         CHECK_THAT(document, Catch::Contains(part));
     const std::string csv = file_contents(folder / "fig8.csv"), markdown = file_contents(folder / "fig8.md");
-    CHECK(csv.starts_with("p,u\n0,"));
+    CHECK(csv.starts_with("p,u,mean u,+-,least u,largest u,"));
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 33);
     CHECK_THAT(markdown, Catch::Contains("## Chief figures") && Catch::Contains("Not drawn"));
 }
@@ -60,7 +66,7 @@ TEST_CASE("a study with matplotlib has its plots, else the reason why not", "[cl
     INFO(run.told());
     REQUIRE(run.code == 0);
     Files expected = {"fig7.csv", "fig7.json", "fig7.md", "index.html"};
-    if (!contains(run.out, "no plots: ")) expected.insert({"fig7.svg", "fig7.png"});
+    if (!contains(run.out, "no plots: ")) expected.insert({"fig7.svg", "fig7.png", "fig7-views.svg", "fig7-views.png"});
     CHECK(files_in(outputs / "made/x") == expected);
 }
 
