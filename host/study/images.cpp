@@ -62,9 +62,13 @@ StudyTable table_of_images(const Images& images, std::uint32_t p) {
 // Scenes are numbered in the order of their first image, and named below the axis; every series has a point for each.
 StudyPlot plot_of(const Images& images, std::uint32_t pes, std::uint32_t p) {
     const auto first = where(images, [&](const Image& image) { return image.side == images.front().side; });
-    const std::string names =
-        joined(first, ", ", [](const Image& image) { return fmt::format("{} {}", image.scene_number, image.scene); });
-    StudyPlot plot{"images", "Efficiency over the scenes", "scene: " + names, "efficiency"};
+    std::string names = "scene: ";
+    for (const Image& image : first) {
+        constexpr std::size_t kInLine = 5;
+        if (image.scene_number > 1) names += (image.scene_number - 1) % kInLine == 0 ? ",\n" : ", ";
+        names += fmt::format("{} {}", image.scene_number, image.scene);
+    }
+    StudyPlot plot{"images", "Efficiency over the scenes", names, "efficiency"};
     for (const Efficiency efficiency : {&Image::cyclic_efficiency, &Image::columns_efficiency}) {
         const std::uint32_t offset = efficiency == &Image::columns_efficiency ? 0 : p;
         const auto label = [&](const Image& image) { return fmt::format("p = {} at {}", offset, image.size()); };
