@@ -32,11 +32,22 @@ void check_packets(const std::string& file) {
     check_writable(file);
 }
 
+void check_replay(const TorusOptions& t) {
+    if (t.replay != "simgrid") throw UserError(fmt::format("--replay {}: must be simgrid", t.replay));
+    if (!t.packets.ends_with(".csv.gz"))
+        throw UserError(
+            "--replay simgrid writes FILE.xml and FILE.replay beside the packets: give --packets FILE.csv.gz");
+    const ReplayFiles files(t.packets);
+    check_writable(files.platform);
+    check_writable(files.replay);
+}
+
 }  // namespace
 
 void check_targets(const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
     if (!packets.empty()) check_packets(packets);
+    if (!command.torus.replay.empty()) check_replay(command.torus);
     check_distinct(command.render.scene,
                    {command.image, command.cost, command.mask, command.report, packets, command.trace.file});
     check_writable_target(command.image, kImageExtensions);

@@ -6,8 +6,11 @@
 #include "host/cli/render_command.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/torus/async_machine.hpp"
+#include "host/torus/history_recorder.hpp"
 #include "host/torus/packet_trace.hpp"
 #include "host/torus/queue_search.hpp"
+#include "host/torus/simgrid_files.hpp"
 #include "host/torus/standstill.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
@@ -18,24 +21,34 @@
 namespace raya {
 namespace {
 
-TorusResult render_with_progress(TorusRenderer& renderer, ProgressBar& bar, PacketTrace* packets, TorusTrace* trace) {
+// What is made of a render beside its image, where it is asked for.
+struct Makes {
+    PacketTrace* packets = nullptr;
+    TorusTrace* trace = nullptr;
+    HistoryRecorder* history = nullptr;
+};
+
+TorusResult render_with_progress(TorusRenderer& renderer, ProgressBar& bar, const Makes& makes) {
+    const auto [packets, trace, history] = makes;
     PacketSink packet_sink;
     SuperstepSink step_sink;
-    if (trace) step_sink = [trace](const SuperstepDetail& step) { trace->add_superstep(step); };
+    NodeWorkSink work_sink;
+    if (trace) step_sink = [makes](const SuperstepDetail& step) { makes.trace->add_superstep(step); };
     if (packets || trace)
-        packet_sink = [packets, trace](const PacketRecord& record) {
-            if (packets) packets->add(record);
-            if (trace) trace->add_packet(record);
+        packet_sink = [makes](const PacketRecord& record) {
+            if (makes.packets) makes.packets->add(record);
+            if (makes.trace) makes.trace->add_packet(record);
         };
+    if (history) work_sink = [makes](const NodeWork& work) { makes.history->add(work); };
     bar.stage("rendering");
     return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{}, packet_sink,
-                           step_sink, packets ? 1 : TorusTrace::kPacketsEvery);
+                           step_sink, packets ? 1 : TorusTrace::kPacketsEvery, work_sink);
 }
 
 // Where the machine stands still, a queue is looked for that is long enough.
-TorusResult render_to_its_end(TorusRenderer& renderer, ProgressBar& bar, PacketTrace* packets, TorusTrace* trace) {
+TorusResult render_to_its_end(TorusRenderer& renderer, ProgressBar& bar, const Makes& makes) {
     try {
-        return render_with_progress(renderer, bar, packets, trace);
+        return render_with_progress(renderer, bar, makes);
     } catch (const Standstill& still) {
         bar.stage("looking for a queue that is long enough");
         const QueueFound found = longer_queue(still.figures.queue, renderer.queue_trial());
@@ -69,6 +82,11 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     t.copies = result.copies;
     t.modelled = torus_time(settings.torus, result);
     return t;
+}
+
+void write_replay(const ReplayFiles& files, const raya_torus& torus, const History& history) {
+    write_whole_file(files.platform, simgrid_platform(torus, {}));
+    write_whole_file(files.replay, simgrid_replay(torus, history, {}));
 }
 
 RenderReport make_report(const RenderCommand& command, const SceneInput& input, const TorusSettings& settings,
@@ -109,13 +127,22 @@ void render_on_torus(const RenderCommand& command) {
     warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     std::optional<PacketTrace> packets;
     std::optional<TorusTrace> trace;
+    std::optional<HistoryRecorder> history;
     if (!command.torus.packets.empty()) packets.emplace();
     if (watch.traces()) trace.emplace(settings.torus);
-    const TorusResult result =
-        render_to_its_end(renderer, *bar, packets ? &*packets : nullptr, trace ? &*trace : nullptr);
+    if (settings.history) history.emplace(settings.torus, settings.packets);
+    const TorusResult result = render_to_its_end(
+        renderer, *bar, {packets ? &*packets : nullptr, trace ? &*trace : nullptr, history ? &*history : nullptr});
 
     bar->stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
+    if (history) {
+        bar->stage("simulating");
+        const History all = history->finish();
+        report.torus->modelled.asynchronous =
+            watch.steps().during("simulate", [&] { return simulate(settings.torus, all).time(); });
+        if (!command.torus.replay.empty()) write_replay(ReplayFiles(command.torus.packets), settings.torus, all);
+    }
     watch.steps().during("write images", [&] {
         write_image(command.image, result.image, image_attributes(report, scene.name));
         if (packets) write_whole_file(command.torus.packets, packets->finish());

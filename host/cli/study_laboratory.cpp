@@ -97,7 +97,23 @@ std::string stage_of(std::span<const Study> wanted, std::size_t at) {
     return fmt::format("study {}, {} of {} done, {}", wanted[at].name, at, wanted.size(), next);
 }
 
-void run_studies(const LaboratoryCommand& command, std::span<const Study> wanted) {
+// What can be run here; one study alone that cannot is refused, of several each is left out, and that is said.
+std::vector<Study> runnable(std::span<const Study> wanted) {
+    std::vector<Study> some;
+    for (const Study& study : wanted) {
+        const std::string lack = study.lack ? study.lack() : "";
+        if (lack.empty())
+            some.push_back(study);
+        else if (wanted.size() == 1)
+            throw UserError(fmt::format("study {}: {}", study.name, lack));
+        else
+            say(fmt::format("raya: study {} is left out: {}\n", study.name, lack));
+    }
+    return some;
+}
+
+void run_studies(const LaboratoryCommand& command, std::span<const Study> asked) {
+    const std::vector<Study> wanted = runnable(asked);
     if (wanted.size() == 1 && wanted.front().one_scene && command.scenes.size() > 1)
         throw UserError(
             fmt::format("study {} takes one scene, {} were given: run it for each, into a folder of its own",

@@ -12,6 +12,7 @@ namespace {
 using Sides = std::array<std::uint32_t, 3>;
 
 constexpr Sides kNodes = {4, 4, 4};  // Yoshitani & Yamazaki
+constexpr const char* kPacketsEnd = ".csv.gz";
 
 }  // namespace
 
@@ -55,6 +56,16 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; "
         "see docs/packets.md",
         "FILE.csv.gz");
+    add("--replay", t.replay,
+        "Beside the packets, write the render's history for SimGrid: FILE.xml, the platform, and FILE.replay, for "
+        "simgrid_replay; see docs/packets.md",
+        "simgrid");
+    command
+        .add_flag(
+            "--async", t.async,
+            "Simulate the machine without supersteps too, whose nodes compute while its links carry: one modelled "
+            "time beside the two bounds")
+        ->group(group);
 }
 
 namespace {
@@ -83,14 +94,16 @@ constexpr std::array<Foreign, 10> kOfRings = {
 
 constexpr const char* kNoNodes =
     "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
-constexpr std::array<Foreign, 8> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
+constexpr std::array<Foreign, 10> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
                                               {"--voxels", kNoNodes},
                                               {"--links", kNoNodes},
                                               {"--inject", kNoNodes},
                                               {"--returns", kNoNodes},
                                               {"--packet-words", kNoNodes},
                                               {"--queue", kNoNodes},
-                                              {"--packets", kNoNodes}}};
+                                              {"--packets", kNoNodes},
+                                              {"--replay", kNoNodes},
+                                              {"--async", kNoNodes}}};
 
 }  // namespace
 
@@ -141,6 +154,12 @@ Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
 
 }  // namespace
 
+ReplayFiles::ReplayFiles(const std::string& packets) {
+    const std::string stem = packets.substr(0, packets.rfind(kPacketsEnd));
+    platform = stem + ".xml";
+    replay = stem + ".replay";
+}
+
 TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, const Scene& scene) {
     TorusSettings settings;
     settings.machine = machine_named(o.machine);
@@ -160,6 +179,7 @@ TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, cons
     settings.format = format_of(o, settings.machine);
     settings.sampling = parse_sampling(o.sampling);
     settings.kernels = kernel_choice(o);
+    settings.history = t.async || !t.replay.empty();
     return settings;
 }
 

@@ -73,6 +73,7 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     if (options.accel != RAYA_ACCEL_NONE) define("ACCEL", options.accel);
     if (options.accel == RAYA_ACCEL_BVH) define("BVH_STACK", options.stack);
     if (options.filter) define("FILTER", 1);
+    if (options.costs) define("COSTS", 1);
     return all;
 }
 

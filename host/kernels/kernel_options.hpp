@@ -24,6 +24,7 @@ struct KernelOptions {
     std::uint32_t stack = 0;                // RAYA_BVH_STACK: links that wait while a ray goes down the tree, at most
     bool filter = false;  // spheres and polygons are filtered in fp32 before the exact test, see filters_hold
     bool polygons = true, patches = true, cones = true;
+    bool costs = false;  // torus nodes tell what each packet cost them
 };
 
 /// How the kernels are built for a device, as far as the user or a check chooses.

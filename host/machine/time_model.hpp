@@ -28,6 +28,15 @@ struct ModelledTime {
     double factor = 1;            // that compute_ms was multiplied by
 };
 
+/// Of a torus whose nodes compute while its links carry (host/torus/async_machine.hpp); in milliseconds.
+struct AsynchronousTime {
+    double finish_ms = 0;
+    double processor_ms = 0, links_ms = 0;  // of the node and of the way of a link that are busy longest
+    double port_ms = 0;                     // that a main task waited for room towards a link, the longest
+    std::uint64_t delivered = 0;            // messages, those that stayed in their node among them
+    std::uint64_t queue_max = 0;            // rays that waited for a main task, at most
+};
+
 /// Of a torus, in milliseconds (host/torus/torus_time.hpp). A real machine lies between `overlapped` and `stepwise`: it
 /// neither overlaps all nor waits every time. The scene's way to the nodes and the image's way from the root to the
 /// host are not in it.
@@ -38,6 +47,7 @@ struct TorusTime {
     double links_ms = 0;       // of the link that has most to carry, both ways
     double overlapped_ms = 0;  // from below: no processor and no link ever waits for another one
     double stepwise_ms = 0;    // every superstep waits for its busiest node, then for its busiest link
+    std::optional<AsynchronousTime> asynchronous{};  // without supersteps, where that was simulated
 };
 
 /// Empty where the machine's rates are not known. The phases' loads, one at least, are those of all PEs; the machine

@@ -54,8 +54,13 @@ Json torus_json(const TorusReport& t) {
 }
 
 Json torus_time_json(const TorusTime& time) {
-    return {{"compute", time.compute_ms}, {"messages", time.messages_ms},     {"processor", time.processor_ms},
-            {"links", time.links_ms},     {"overlapped", time.overlapped_ms}, {"stepwise", time.stepwise_ms}};
+    Json json = {{"compute", time.compute_ms}, {"messages", time.messages_ms},     {"processor", time.processor_ms},
+                 {"links", time.links_ms},     {"overlapped", time.overlapped_ms}, {"stepwise", time.stepwise_ms}};
+    if (const auto& async = time.asynchronous)
+        json["asynchronous"] = {{"finish", async->finish_ms},    {"processor", async->processor_ms},
+                                {"links", async->links_ms},      {"port", async->port_ms},
+                                {"delivered", async->delivered}, {"queue_max", async->queue_max}};
+    return json;
 }
 
 Json t805_budget_json(const EventCounts& events, const PacketCharge& packets) {
@@ -89,11 +94,19 @@ std::string torus_lines(const TorusReport& t) {
                         t.hops, t.link.count, data_text(static_cast<double>(t.link.total_bytes)),
                         data_text(t.link.mean_bytes()), data_text(static_cast<double>(t.link.max_bytes)));
     const TorusTime& m = t.modelled;
-    return text + fmt::format(
-                      "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step "
-                      "(modelled time of T805s)\n",
-                      time_text(m.overlapped_ms), time_text(m.processor_ms), time_text(m.compute_ms),
-                      time_text(m.messages_ms), time_text(m.links_ms), time_text(m.stepwise_ms));
+    text += fmt::format(
+        "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step (modelled "
+        "time "
+        "of T805s)\n",
+        time_text(m.overlapped_ms), time_text(m.processor_ms), time_text(m.compute_ms), time_text(m.messages_ms),
+        time_text(m.links_ms), time_text(m.stepwise_ms));
+    if (const auto& async = m.asynchronous)
+        text += fmt::format(
+            "async   {} without supersteps (busiest processor {}, link {}; a main task waited for links {} at most; {} "
+            "messages)\n",
+            time_text(async->finish_ms), time_text(async->processor_ms), time_text(async->links_ms),
+            time_text(async->port_ms), async->delivered);
+    return text;
 }
 
 std::string torus_memory_text(const TorusReport& t) {

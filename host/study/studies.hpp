@@ -5,6 +5,7 @@
 // (rows.hpp), plots and comparisons that name the same figures, and findings: sentences, each a function of the rows.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct Study {
     std::string name, summary;
     bool one_scene;  // takes the first of several
     StudyFunction* run;
+    std::string (*lack)() = nullptr;  // what it needs and this machine does not have, and the remedy; empty: nothing
 };
 
 /// In the order in which they tell the story.
@@ -104,5 +106,13 @@ StudyPage inject_page(Session& session, const LabelledScene& scene, std::uint32_
 /// `nodes`: a power of two, of the whole machine; in 1, 2, 4, ... groups, up to one for each node. `scenes`: one at
 /// least.
 StudyPage hybrid_page(Session& session, const Scenes& scenes, std::uint32_t size, std::uint32_t nodes);
+
+// The asynchronous torus.
+StudyFunction study_simgrid;
+std::string lack_of_simgrid();
+
+/// The same history by raya and by `program`, simgrid_replay, on 4 x 4 x 4 and on 8 x 8 nodes. PeerFailure.
+StudyPage simgrid_page(Session& session, const LabelledScene& scene, std::uint32_t size,
+                       const std::filesystem::path& program);
 
 }  // namespace raya

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/torus/census.hpp"
 #include "kernels/shared/node_counts.h"
 
 namespace raya {
@@ -71,6 +72,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       events_(session_.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
       made_(session_.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
       ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
+      treated_(session_.buffer<raya_treated>("treated packets", options_.costs ? queues_.size() : 1)),
       rays_(session_, settings.torus, buffers.box,
             {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words}),
       homeward_(session_, settings.torus, buffers.box,
@@ -117,7 +119,7 @@ void NodeArray::inject() {
 
 void NodeArray::trace_voxel(Room room) {
     session_.launch("trace_voxel", trace_, nodes_, options_.group_size, memories_, starts_, run_, room,
-                    local_words(RAYA_COUNT_WORDS), queues_, status_, events_, made_, ended_);
+                    local_words(RAYA_COUNT_WORDS), queues_, status_, events_, made_, ended_, treated_);
 }
 
 void NodeArray::route() {
@@ -150,6 +152,20 @@ NodeStatus NodeArray::look() {
     NodeStatus status(nodes_);
     session_.read("look", status_, status.words);
     return status;
+}
+
+void NodeArray::tell_work(const NodeStatus& injected, const NodeWorkSink& sink) {
+    const NodeStatus status = look();
+    const std::vector<std::uint64_t> cycles = cycles_of_nodes(injected, nodes_);
+    std::vector<raya_treated> treated;
+    std::vector<raya_packet> queue;
+    for (std::uint32_t node = 0; node < nodes_; ++node) {
+        treated.resize(injected.at(node, RAYA_STATUS_QUEUE));
+        queue.resize(status.at(node, RAYA_STATUS_QUEUE));
+        session_.read("history", treated_, treated, std::size_t{node} * buffers_.queue);
+        session_.read("history", queues_, queue, std::size_t{node} * buffers_.queue);
+        sink({node, cycles[node], treated, queue});
+    }
 }
 
 void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns) {

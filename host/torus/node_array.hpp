@@ -8,6 +8,7 @@
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/node_kernels.hpp"
 #include "host/torus/node_memory.hpp"
+#include "host/torus/node_work.hpp"
 #include "host/torus/packet_record.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/torus/torus_settings.hpp"
@@ -36,6 +37,10 @@ class NodeArray {
 
     /// What the nodes say; the host waits. accept() clears what they say of one superstep.
     NodeStatus look();
+
+    /// What trace_voxel has done in each node, after inject and trace_voxel and before route; `injected` is what the
+    /// nodes said between those two. For kernels that tell what packets cost (KernelOptions::costs).
+    void tell_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
     /// Return packets that have reached the root since the last call are appended.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
@@ -71,6 +76,7 @@ class NodeArray {
     Buffer<std::uint32_t> status_;
     Buffer<raya_head> returns_;
     Buffer<std::uint64_t> events_, made_, ended_;
+    Buffer<raya_treated> treated_;
     LinkExchange rays_, homeward_;  // boxes of rays, of returns
     node_kernels::Inject inject_;
     node_kernels::TraceVoxel trace_;

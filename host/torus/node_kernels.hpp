@@ -23,11 +23,12 @@ using Boxes = Buffer<std::uint32_t>&;
 using Returns = Buffer<raya_head>&;  // at the root
 using Status = Buffer<std::uint32_t>&;
 using Counters = Buffer<std::uint64_t>&;
+using Treated = Buffer<raya_treated>&;
 
 using Inject =
     DescribedKernel<"torus/inject.cl", "inject", Words, Words, Run, Own, Queues, Status, Counters, Counters, Counters>;
 using TraceVoxel = DescribedKernel<"torus/trace_voxel.cl", "trace_voxel", Words, Words, Run, Room, Own, Queues, Status,
-                                   Counters, Counters, Counters>;
+                                   Counters, Counters, Counters, Treated>;
 using Route =
     DescribedKernel<"torus/route.cl", "route", Words, Words, Run, Own, Queues, Boxes, Boxes, Returns, Status, Counters>;
 using Accept = DescribedKernel<"torus/accept.cl", "accept", Words, Words, Run, Room, Uint<"turn">, Words, Words, Own,

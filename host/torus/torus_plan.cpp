@@ -47,7 +47,8 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
                       filters_hold(s.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
-            .cones = job.has_cones()};
+            .cones = job.has_cones(),
+            .costs = s.history};
 }
 
 void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob& job, const Partition& partition) {

@@ -41,10 +41,12 @@ double share_done(const Census& census, std::size_t returns, std::uint64_t most_
 // Returns that room is made for before they come, at most: 128 MB, of which only what is used is ever touched.
 constexpr std::uint64_t kReservedReturns = 1 << 22;
 
-// Who is told of packets, and in which supersteps.
-struct PacketWatch {
-    PacketSink sink{};
+// Who is told of packets, and in which supersteps, of supersteps and of nodes' work.
+struct Watch {
+    PacketSink packets{};
     std::uint32_t every = 1;
+    SuperstepSink steps{};
+    NodeWorkSink work{};
 };
 
 struct TorusRenderer::Parts {
@@ -64,8 +66,8 @@ struct TorusRenderer::Parts {
     void divide(std::uint32_t lights);
     void build();
     std::optional<StandstillFigures> run(TorusResult& result, std::vector<raya_head>& returns,
-                                         const ProgressCallback& progress, const PacketWatch& packets,
-                                         const SuperstepSink& step_sink);
+                                         const ProgressCallback& progress, const Watch& watch);
+    void compute(Room room, bool injects, const NodeWorkSink& work);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
@@ -117,7 +119,7 @@ void TorusRenderer::set_queue(std::uint32_t queue) {
 bool TorusRenderer::ends() {
     TorusResult result;
     std::vector<raya_head> returns;
-    return !parts_->run(result, returns, {}, {}, {});
+    return !parts_->run(result, returns, {}, {});
 }
 
 QueueTrial TorusRenderer::queue_trial() {
@@ -151,15 +153,18 @@ void TorusRenderer::Parts::build() {
 }
 
 TorusResult TorusRenderer::render(const ProgressCallback& progress, const PacketSink& sink,
-                                  const SuperstepSink& step_sink, std::uint32_t packets_every) {
+                                  const SuperstepSink& step_sink, std::uint32_t packets_every,
+                                  const NodeWorkSink& work_sink) {
     Parts& p = *parts_;
+    if (work_sink && !p.settings.history) throw std::logic_error("a history was not asked for in the settings");
     p.session.clear_profile();
     const Clock::time_point start = Clock::now();
     const StepLog::Step rendering = p.session.step("render");
     TorusResult result;
     std::vector<raya_head> returns;
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
-    if (const auto stand = p.run(result, returns, progress, {sink, packets_every}, step_sink)) throw Standstill(*stand);
+    if (const auto stand = p.run(result, returns, progress, {sink, packets_every, step_sink, work_sink}))
+        throw Standstill(*stand);
     p.compose(result, returns);
     p.collect(result);
     result.render_s = seconds_since(start);
@@ -168,10 +173,18 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     return result;
 }
 
+// What nodes do before packets move.
+void TorusRenderer::Parts::compute(Room room, bool injects, const NodeWorkSink& work) {
+    if (injects) nodes->inject();
+    if (!work) return nodes->trace_voxel(room);
+    const NodeStatus injected = nodes->look();
+    nodes->trace_voxel(room);
+    nodes->tell_work(injected, work);
+}
+
 // To the machine's end, or to a stand.
 std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
-                                                           const ProgressCallback& progress, const PacketWatch& packets,
-                                                           const SuperstepSink& step_sink) {
+                                                           const ProgressCallback& progress, const Watch& watch) {
     const StepLog::Step step = session.step("supersteps");
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
@@ -180,20 +193,19 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
     int stands = 0;  // supersteps without progress
     std::uint64_t most_live = 0;
     for (std::uint32_t superstep = 0;; ++superstep) {
-        if (!crowded) nodes->inject();
-        nodes->trace_voxel(room);
+        compute(room, !crowded, watch.work);
         nodes->route();
         const NodeStatus status = nodes->look();
         nodes->gather(status, returns);
-        if (packets.sink) nodes->record(status, superstep, superstep % packets.every ? PacketSink{} : packets.sink);
+        if (watch.packets) nodes->record(status, superstep, superstep % watch.every ? PacketSink{} : watch.packets);
         const std::vector<std::uint64_t> words = nodes->exchange(status);
         nodes->accept(room, superstep);
 
         const Census census = census_of(status, raya_nodes(settings.torus), buffers.queue);
         const std::uint64_t most_words = *std::max_element(words.begin(), words.end());
         result.supersteps.push_back({census.cycles, most_words, census.live});
-        if (step_sink)
-            step_sink({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
+        if (watch.steps)
+            watch.steps({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
         for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
         most_live = std::max(most_live, census.live);
         const bool ended = census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made;

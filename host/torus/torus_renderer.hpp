@@ -7,6 +7,7 @@
 #include "host/files/progress.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/scene.hpp"
+#include "host/torus/node_work.hpp"
 #include "host/torus/packet_record.hpp"
 #include "host/torus/queue_search.hpp"
 #include "host/torus/superstep.hpp"
@@ -24,9 +25,11 @@ class TorusRenderer {
 
     /// One image; may be called again. `sink`, where given, is told of every packet between nodes, in the order of
     /// supersteps, then sources, or of those of supersteps 0, `packets_every`, ... alone, since telling takes time;
-    /// `step_sink` of every superstep. Throws Standstill.
+    /// `step_sink` of every superstep; `work_sink` of what every node did in every superstep, for settings with
+    /// `history` alone (std::logic_error). Throws Standstill.
     TorusResult render(const ProgressCallback& progress = {}, const PacketSink& sink = {},
-                       const SuperstepSink& step_sink = {}, std::uint32_t packets_every = 1);
+                       const SuperstepSink& step_sink = {}, std::uint32_t packets_every = 1,
+                       const NodeWorkSink& work_sink = {});
 
     /// By what the scene's lengths are multiplied.
     const LengthScale& scale() const;

@@ -35,6 +35,7 @@ struct TorusSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
+    bool history = false;  // nodes tell what each packet cost them, which TorusRenderer::render() needs for a history
 };
 
 }  // namespace raya

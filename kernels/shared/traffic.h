@@ -31,6 +31,13 @@ enum {
     RAYA_STATUS_WORDS = 34
 };
 
+// What a node did for the packet in one slot of its queue, where kernels are asked to tell (RAYA_COSTS).
+typedef struct {
+    raya_u32 pixel, state, path;  // of the packet as it was before; state 0: it waits, or there was none
+    raya_u32 cycles;              // modelled: its tests and steps, its shading, what it turned into
+} raya_treated;
+RAYA_SHARED_SIZE(raya_treated, 4 * 4);
+
 // What stays the same through a render, and the nodes read from a buffer.
 typedef struct {
     raya_u32 queue;           // packets that a node's queue holds

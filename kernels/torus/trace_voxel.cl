@@ -17,7 +17,8 @@
 // Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across
 // a voxel's side (kernels/grid/walk.clh). They visit all voxels in the order of their numbers, remember where
 // their nearest hit was found, and are shaded there.
-// Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64.
+// Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64; where costs are told, cycles
+// for one packet in one voxel < 2^32.
 #include "kernels/torus/outcome.clh"
 #include "kernels/torus/shade_packets.clh"
 
@@ -44,12 +45,16 @@ static inline mask reserve(const node* n, const flight* f, mask m, uint* reserve
     return m & (is_shadow(f) | chosen.truth);
 }
 
-static inline void count_tests(const flight* f, mask m, objects_words all) {
-    const uint rays = mask_count(m);
-    count_events(f, RAYA_SPHERE_TESTS, rays * all->spheres);
-    count_events(f, RAYA_PLANE_TESTS, rays * all->planes);
-    count_events(f, RAYA_POLYGON_TESTS, rays * all->polygons);
-    count_events(f, RAYA_CONE_TESTS, rays * all->cones);
+static inline void count_tests_of(flight* f, uint event, mask m, uint objects) {
+    count_events(f, event, mask_count(m) * objects);
+    add_cost(f, event, m, objects);
+}
+
+static inline void count_tests(flight* f, mask m, objects_words all) {
+    count_tests_of(f, RAYA_SPHERE_TESTS, m, all->spheres);
+    count_tests_of(f, RAYA_PLANE_TESTS, m, all->planes);
+    count_tests_of(f, RAYA_POLYGON_TESTS, m, all->polygons);
+    count_tests_of(f, RAYA_CONE_TESTS, m, all->cones);
 }
 
 // The packets of the lanes m go on to the voxels `place`.
@@ -92,6 +97,9 @@ static inline void treat(const node* n, flight* f, mask m, uint place) {
     uint reserved;
     m = reserve(n, f, m, &reserved);
     if (!mask_any(m)) return;
+#if RAYA_COSTS
+    f->treated.truth |= m;
+#endif
     const int outside = place == RAYA_NO_VOXEL;
     const voxel_words voxel = own_voxel(n, outside ? n->place : raya_unpack_place(place));
     const objects_words all = outside ? &((job_words)n->memory)->objects : &voxel->objects;
@@ -113,6 +121,19 @@ static inline void treat(const node* n, flight* f, mask m, uint place) {
     end_packets(f, o.struck | o.missed | o.stopped | o.arrived);
     if (reserved) shared_add(&f->shared[RAYA_COUNT_RESERVED], f->appended - before - reserved);
 }
+
+#if RAYA_COSTS
+// Tells what the packets of the slots up to `end` - 1 have cost.
+static inline void tell_costs(const flight* f, uint end, __global raya_treated* treated) {
+    for (uint lane = 0; lane < RAYA_LANES && f->first + lane < end; ++lane) {
+        __global raya_treated* t = treated + f->first + lane;
+        t->pixel = f->pixel.lane[lane];
+        t->state = f->treated.lane[lane] ? f->state.lane[lane] : RAYA_KIND_NONE;
+        t->path = f->path.lane[lane];
+        t->cycles = f->cycles.lane[lane];
+    }
+}
+#endif
 
 // Treats the packets of the queue's slots first .. end - 1, at most V, that are in voxels
 // of this node or outside the box.
@@ -142,7 +163,8 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  __global uint* restrict status,          // [node][RAYA_STATUS_WORDS]
                  __global ulong* restrict events,         // [node][RAYA_EVENTS], added to
                  __global ulong* restrict made,           // [node][RAYA_KINDS]: packets, added to
-                 __global ulong* restrict ended)          // [node][RAYA_KINDS], added to
+                 __global ulong* restrict ended,          // [node][RAYA_KINDS], added to
+                 __global raya_treated* restrict treated) // [node][queue], where RAYA_COSTS is 1; else not touched
 {
     const uint number = get_group_id(0), item = get_local_id(0);
     status += (size_t)number * RAYA_STATUS_WORDS;
@@ -155,12 +177,19 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
     f.shared = local_words;
     open_shared(f.shared, count);
     const node n = open_node(memories, starts, local_words + RAYA_COUNT_WORDS);
+#if RAYA_COSTS
+    f.job = (job_words)n.memory;
+    treated += (size_t)number * run->queue;
+#endif
     for (;;) {
         // The packets that came last first: among them are the deepest rays, which ask for the least room.
         const uint taken = shared_add(&f.shared[RAYA_COUNT_NEXT], RAYA_LANES);
         if (taken >= count) break;
         const uint end = count - taken;
         treat_slots(&n, &f, end > RAYA_LANES ? end - RAYA_LANES : 0, end);
+#if RAYA_COSTS
+        tell_costs(&f, end, treated);
+#endif
     }
     node_barrier();
     if (item == 0) report_counts(&n, f.shared, status, events, made, ended);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "host/files/program.hpp"
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
@@ -58,6 +59,20 @@ TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[
     CHECK(csv.starts_with("p,u,mean u,+-,least u,largest u,"));
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 33);
     CHECK_THAT(markdown, Catch::Contains("## Chief figures") && Catch::Contains("Not drawn"));
+}
+
+// SimGrid's program lies beside raya, where it is built: a copy of raya elsewhere has none.
+TEST_CASE("without SimGrid its study says what to install, and the others go on without it", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string copy = outputs / "raya";
+    std::filesystem::copy_file(RAYA_PROGRAM, copy);
+    const ProgramRun alone = run_program({copy, "study", "simgrid", "-o", outputs / "out"});
+    CHECK(ending_text(alone.status) == "exit code 2");
+    for (const char* part : {"study simgrid", "tools/setup --studies", "libsimgrid-dev"})
+        CHECK_THAT(alone.err, Catch::Contains(part));
+    CHECK_FALSE(std::filesystem::exists(outputs / "out"));
+    const ProgramRun all = run_program({copy, "study", "all", outputs / "missing.nff", "-o", outputs / "out"});
+    CHECK_THAT(all.err, Catch::Contains("study simgrid is left out") && Catch::Contains("missing.nff"));
 }
 
 TEST_CASE("a study with matplotlib has its plots, else the reason why not", "[cli]") {

@@ -78,10 +78,13 @@ TEST_CASE("the torus's own options are checked before anything is rendered", "[c
 TEST_CASE("a trace of packets that could not be written is refused before anything is rendered", "[cli]") {
     const ScratchFolder outputs;
     const std::string missing = outputs / "missing/p.csv.gz", image = outputs / "x.pfm";
-    check_refused_on("torus", {{{"--packets", outputs / "p.csv"}, {"p.csv", "gzip", ".csv.gz"}},
-                               {{"--packets", missing}, {"/missing' does not exist", "mkdir -p"}},
-                               {{"--packets", outputs / "p.csv.gz", "--report", outputs / "p.csv.gz"},
-                                {"p.csv.gz", "named twice"}}});
+    check_refused_on(
+        "torus", {{{"--packets", outputs / "p.csv"}, {"p.csv", "gzip", ".csv.gz"}},
+                  {{"--packets", missing}, {"/missing' does not exist", "mkdir -p"}},
+                  {{"--packets", outputs / "p.csv.gz", "--report", outputs / "p.csv.gz"}, {"p.csv.gz", "named twice"}},
+                  {{"--replay", "simgrid"}, {"--replay simgrid", "give --packets FILE.csv.gz"}},
+                  {{"--replay", "simgrid", "--packets", outputs / "p.gz"}, {"FILE.csv.gz"}},
+                  {{"--replay", "booksim", "--packets", outputs / "p.csv.gz"}, {"must be simgrid"}}});
     check_refused(
         outputs,
         {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--machine", "torus", "--packets", outputs.path()}, 2,
@@ -119,7 +122,7 @@ TEST_CASE("the help of render gives the torus's options with units and defaults"
     for (const char* text :
          {"Torus machine", "torus: nodes of 4 MB", "--nodes IxJxK=4x4x4", "--voxels AxBxC", "fewer leave nodes empty",
           "one for each node", "torus3d|torus2d=torus3d", "root|all=all", "--queue N", "Packets that wait",
-          "--pe-memory BYTES", "4194304", "--packets FILE.csv.gz", "docs/packets.md"})
+          "--pe-memory BYTES", "4194304", "--packets FILE.csv.gz", "docs/packets.md", "--async", "--replay simgrid"})
         CHECK_THAT(run.out, Catch::Contains(text));
     CHECK_THAT(run_raya({"bench", "--help"}).out, !Catch::Contains("--nodes"));
 }

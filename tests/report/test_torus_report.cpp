@@ -70,6 +70,14 @@ TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
     CHECK(json["steps"] == 100 + RAYA_STEPS);
     CHECK(json["modelled_ms"] == Document::parse(R"({"compute": 1.0, "messages": 2.0, "processor": 3.0, "links": 4.0,
         "overlapped": 5.0, "stepwise": 6.0})"));
+    RenderReport async = report_with_figures();
+    async.torus->modelled.asynchronous = AsynchronousTime{5.5, 3.5, 4.5, 0.5, 77, 8};
+    CHECK(read_back(to_json(async))["modelled_ms"]["asynchronous"] ==
+          Document::parse(R"({"finish": 5.5, "processor": 3.5, "links": 4.5, "port": 0.5, "delivered": 77,
+        "queue_max": 8})"));
+    CHECK_THAT(human_summary(async),
+               Catch::Contains("async   5.5 ms without supersteps (busiest processor 3.5 ms, link "
+                               "4.5 ms; a main task waited for links 0.5 ms at most; 77 messages)"));
     CHECK(json["load"]["per_pe"].size() == 64);
     for (const char* ring : {"antialias", "communication"}) CHECK_FALSE(json.contains(ring));
     RenderReport ring = report_with_figures();

@@ -47,6 +47,10 @@ run_setup
 expect 0
 expect_silence
 
+# What single studies ask for is installed when it is asked for.
+run_setup --studies
+expect 1 "neither root nor sudo" "$line libsimgrid-dev"
+
 # Two are missing, one of them removed but not purged; neither root nor sudo.
 stand_in dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }
 echo catch2 config-files; exit 1"

@@ -1,0 +1,55 @@
+// What simgrid_replay tells, and where SimGrid is installed, random histories by it and by raya.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "host/study/simgrid_peer.hpp"
+#include "host/study/studies.hpp"
+#include "tests/paths.h"
+#include "tests/torus/random_history.hpp"
+
+namespace raya {
+namespace {
+
+std::filesystem::path replay_program() { return std::filesystem::path(RAYA_PROGRAM).parent_path() / "simgrid_replay"; }
+
+TEST_CASE("a time and a number of messages are read, anything else is refused", "[study]") {
+    const SimgridAnswer answer = simgrid_answer("finish_ms 12.5\ndelivered 7\n");
+    CHECK(answer.finish_ms == 12.5);
+    CHECK(answer.delivered == 7);
+    for (const char* printed : {"", "finish_ms\n", "finish_ms soon\ndelivered 7\n", "delivered 7\nfinish_ms 12.5\n"})
+        CHECK_THROWS_AS(simgrid_answer(printed), PeerFailure);
+    CHECK_THROWS_AS(ask_simgrid("/nowhere/simgrid_replay", make_torus({2, 1, 1}, Links::kTorus3d), {}, {}),
+                    PeerFailure);
+}
+
+TEST_CASE("without simgrid_replay beside the program the study says what to install", "[study]") {
+    const std::string lack = lack_of_simgrid();  // the test programs lie in a folder of their own
+    CHECK_THAT(lack, Catch::Contains("tools/setup --studies") && Catch::Contains("libsimgrid-dev"));
+}
+
+// Times agree where no two messages ask for one place at the same instant; where they do, who comes first is each
+// simulator's own choice, and the times of small histories are far from one another at times.
+TEST_CASE("SimGrid delivers the same messages in about the same time", "[study]") {
+    const std::filesystem::path program = replay_program();
+    if (!std::filesystem::exists(program)) {
+        WARN("SimGrid is not installed: tools/setup --studies");
+        return;
+    }
+    constexpr std::uint64_t kSeed = 332;
+    double ours = 0, theirs = 0;
+    for (std::uint64_t i = 0; i < 12; ++i) {
+        SplitMix random(kSeed + i);
+        const raya_torus torus = random_torus(random, 4);
+        const History history = random_history(random, torus, 400);
+        CAPTURE(kSeed, i, torus_text(torus), history.messages.size());
+        const SimgridAnswer answer = ask_simgrid(program, torus, history, {});
+        CHECK(answer.delivered == history.messages.size());
+        ours += simulate(torus, history).finish_ms;
+        theirs += answer.finish_ms;
+        CHECK(answer.finish_ms >= torus_time(torus, traffic_of(torus, history)).overlapped_ms * (1 - 1e-6));
+    }
+    CHECK(ours == Approx(theirs).epsilon(0.05));
+}
+
+}  // namespace
+}  // namespace raya

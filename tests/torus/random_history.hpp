@@ -1,0 +1,84 @@
+// Histories for tests: random ones, and what their messages amount to on the way.
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "host/torus/history.hpp"
+#include "host/torus/torus_time.hpp"
+#include "tests/torus/random_torus.hpp"
+
+namespace raya {
+
+/// Builds a history task by task, as one would tell it.
+class HistoryBuilder {
+  public:
+    /// A task of the node, caused by a message or by itself; returns its number.
+    std::uint32_t task(std::uint32_t node, std::uint64_t cycles, std::uint32_t cause = HistoryTask::kInjection) {
+        history.tasks.push_back({.node = node,
+                                 .cause = cause,
+                                 .cycles = cycles,
+                                 .first = static_cast<std::uint32_t>(history.messages.size())});
+        return static_cast<std::uint32_t>(history.tasks.size()) - 1;
+    }
+    /// The last task sends; returns the message's number.
+    std::uint32_t ray(std::uint32_t to) { return send(to, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
+    std::uint32_t back() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
+
+    History history;
+
+  private:
+    std::uint32_t send(std::uint32_t to, std::uint16_t words, std::uint16_t kind) {
+        history.messages.push_back({static_cast<std::uint32_t>(history.tasks.size()) - 1, to, words, kind});
+        return static_cast<std::uint32_t>(history.messages.size()) - 1;
+    }
+};
+
+/// Up to `most` tasks or a few more, begun at some nodes or at the root alone, of very different lengths; rays of three
+/// lengths go anywhere, to their own node as well.
+inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t most) {
+    struct Due {
+        std::uint32_t node, cause;
+    };
+    const std::uint32_t nodes = raya_nodes(torus), begin = 1 + random_below(random, most / 4);
+    const bool root = random.next() % 3 == 0;
+    const std::uint32_t longest = 1 + random_below(random, 4000);
+    std::deque<Due> due;
+    for (std::uint32_t i = 0; i < begin; ++i)
+        due.push_back({root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kInjection});
+    HistoryBuilder built;
+    while (!due.empty()) {
+        const Due next = due.front();
+        due.pop_front();
+        built.task(next.node, random_below(random, longest), next.cause);
+        const std::uint32_t rays = built.history.tasks.size() + due.size() < most ? random_below(random, 4) : 0;
+        for (std::uint32_t i = 0; i < rays; ++i) {
+            const std::uint32_t to = random.next() % 4 == 0 ? next.node : random_below(random, nodes);
+            due.push_back({to, built.ray(to)});
+            built.history.messages.back().words = static_cast<std::uint16_t>(8 + 8 * random_below(random, 3));
+        }
+        for (std::uint32_t i = random_below(random, 3); i > 0; --i) built.back();
+    }
+    return built.history;
+}
+
+/// What torus_time() asks of a render: loads of nodes, and words and messages of links by the rules of the ways.
+inline TorusResult traffic_of(const raya_torus& torus, const History& history) {
+    TorusResult result;
+    std::vector<std::uint64_t> loads(raya_nodes(torus));
+    result.link_words.resize(loads.size() * RAYA_LINKS);
+    result.link_packets.resize(loads.size() * RAYA_LINKS);
+    for (const HistoryTask& task : history.tasks) loads[task.node] += task.cycles;
+    for (const HistoryMessage& message : history.messages)
+        for (std::uint32_t node = history.tasks[message.task].node; node != message.to;) {
+            const bool home = message.kind == RAYA_KIND_RETURN;
+            const std::uint32_t link = home ? raya_home_link(torus, node) : raya_next_link(torus, node, message.to);
+            result.link_words[node * RAYA_LINKS + link] += message.words;
+            ++result.link_packets[node * RAYA_LINKS + link];
+            node = raya_link_end(torus, node, link);
+        }
+    result.load = load_of(std::move(loads));
+    return result;
+}
+
+}  // namespace raya

@@ -1,0 +1,214 @@
+// The asynchronous torus against times worked out by hand, against bounds, and against what would stand still.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "host/torus/async_machine.hpp"
+#include "tests/thorough.hpp"
+#include "tests/torus/random_history.hpp"
+
+namespace raya {
+namespace {
+
+// Milliseconds: a cycle, both ends of a ray or a return, and a ray or a return on a link, alone and both ways at once.
+constexpr double kCycle = 40e-6, kRayEnd = 51 * kCycle, kReturnEnd = 35 * kCycle;
+constexpr double kRay = 64 / 1.7e3, kReturn = 32 / 1.7e3, kRayBoth = 64 / 1.2e3;
+
+Approx about(double value) { return Approx(value).epsilon(1e-9); }
+
+raya_torus ring_of(std::uint32_t nodes) { return make_torus({nodes, 1, 1}, Links::kTorus3d); }
+
+double total(const std::vector<AsyncNode>& nodes, double AsyncNode::*figure) {
+    return std::accumulate(nodes.begin(), nodes.end(), 0.0,
+                           [&](double sum, const AsyncNode& node) { return sum + node.*figure; });
+}
+
+TEST_CASE("a ray goes over links one after another, and what it makes returns", "[torus]") {
+    const std::uint32_t hops = GENERATE(0u, 1u, 2u, 3u);
+    HistoryBuilder h;
+    h.task(0, 1000);
+    h.task(hops, 2000, h.ray(hops));
+    h.back();
+    const AsyncResult r = simulate(ring_of(7), h.history);
+    const double way = hops * (2 * kRayEnd + kRay) + hops * (2 * kReturnEnd + kReturn);
+    CHECK(r.finish_ms == about(3000 * kCycle + way));
+    CHECK(r.delivered == 2);
+    CHECK(r.links[0].messages == (hops > 0));
+    CHECK(total(r.nodes, &AsyncNode::compute_ms) == about(3000 * kCycle));
+    CHECK(total(r.nodes, &AsyncNode::messages_ms) == Approx(hops * 2 * (kRayEnd + kReturnEnd)));
+}
+
+TEST_CASE("a link carries one message after another, and two ways share it", "[torus]") {
+    HistoryBuilder one_way;
+    one_way.task(1, 500);
+    const std::uint32_t first = one_way.ray(2), second = one_way.ray(2);
+    one_way.task(2, 10, first);
+    one_way.task(2, 20, second);
+    // The input thread has room for one: the second starts when the first has been taken in.
+    CHECK(simulate(ring_of(4), one_way.history).finish_ms == about(520 * kCycle + 4 * kRayEnd + 2 * kRay));
+
+    HistoryBuilder both;
+    both.task(1, 500);
+    const std::uint32_t up = both.ray(2);
+    both.task(2, 500);
+    const std::uint32_t down = both.ray(1);
+    both.task(2, 10, up);
+    both.task(1, 10, down);
+    CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + kRayBoth));
+    // Half of the first has gone when the second starts; then both go on at the lower rate, then the second alone.
+    const auto later = static_cast<std::uint64_t>(kRay / 2 / kCycle);
+    both.history.tasks[1].cycles = 500 + later;
+    const double alone = static_cast<double>(later) * kCycle, shared = (1 - alone / kRay) * kRayBoth;
+    const double rest = (1 - shared / kRayBoth) * kRay;
+    CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + alone + shared + rest));
+}
+
+TEST_CASE("messages go before the main task, which ends so much later", "[torus]") {
+    HistoryBuilder h;
+    h.task(1, 100'000);  // all that happens, happens meanwhile
+    h.task(0, 10);
+    h.task(2, 10, h.ray(2));  // passes node 1: in and out
+    h.task(3, 10);
+    h.back();  // round the other way
+    const AsyncResult r = simulate(ring_of(5), h.history);
+    CHECK(r.finish_ms == about(100'000 * kCycle + 2 * kRayEnd));
+    CHECK(r.nodes[1].messages_ms == about(2 * kRayEnd));
+}
+
+TEST_CASE("a port that is full makes the main task wait", "[torus]") {
+    constexpr std::uint32_t kRays = 12;
+    HistoryBuilder h;
+    std::vector<std::uint32_t> sent;
+    h.task(1, 0);
+    for (std::uint32_t i = 0; i < kRays; ++i) sent.push_back(h.ray(2));
+    for (const std::uint32_t message : sent) h.task(2, 0, message);
+    h.task(1, 1000);
+    const AsyncMachine machine{.buffer = 5};
+    const AsyncResult r = simulate(ring_of(4), h.history, machine);
+    // Rays enter while two places are free: four at once, each other one when one has gone.
+    CHECK(r.nodes[1].port_ms == about((kRays - 4) * (2 * kRayEnd + kRay) - kRayEnd));
+    CHECK(r.finish_ms == about(kRays * (2 * kRayEnd + kRay)));
+    CHECK(r.nodes[2].queue_max == 1);
+    const AsyncResult roomy = simulate(ring_of(4), h.history, {.buffer = kRays + 1});
+    CHECK(roomy.nodes[1].port_ms == 0);
+    CHECK(roomy.finish_ms == r.finish_ms);
+    CHECK_THROWS_AS(simulate(ring_of(4), h.history, {.buffer = 1}), UserError);
+}
+
+// Every node of a ring sends many rays to the node opposite: each waits for the next one's room.
+TEST_CASE("a ring that may be filled stands still; with one place left free it turns", "[torus]") {
+    const raya_torus torus = ring_of(6);
+    HistoryBuilder h;
+    std::vector<std::uint32_t> sent;
+    for (std::uint32_t node = 0; node < 6; ++node) {
+        h.task(node, 0);
+        for (int i = 0; i < 30; ++i) sent.push_back(h.ray((node + 3) % 6));
+    }
+    for (const std::uint32_t message : sent) h.task(h.history.messages[message].to, 0, message);
+    for (const std::uint32_t buffer : {2u, 3u, 8u}) {
+        CAPTURE(buffer);
+        CHECK_THROWS_WITH(simulate(torus, h.history, {.buffer = buffer, .entering = 1}),
+                          Catch::Contains("stands still") && Catch::Contains("of 180 messages"));
+        CHECK(simulate(torus, h.history, {.buffer = buffer}).delivered == 180);
+    }
+}
+
+// A node takes rays as they come: an early one that nobody waits for may be before one that others wait for. So no
+// theorem says that a machine without supersteps is the faster one, though renders are (test_history.cpp).
+TEST_CASE("supersteps can be faster, where they order what is done", "[torus]") {
+    constexpr std::uint64_t kLong = 10'000'000;
+    HistoryBuilder h;
+    h.task(0, 10);
+    const std::uint32_t one = h.ray(0), other = h.ray(1);
+    h.task(0, kLong, one);       // superstep 2 of node 0, begun before
+    h.task(1, 100'000, other);   // superstep 2 of node 1
+    h.task(0, 10, h.ray(0));     // superstep 3 of node 0, for which
+    h.task(2, kLong, h.ray(2));  // superstep 4 of node 2 waits
+    const double none_orders = simulate(ring_of(4), h.history).finish_ms;
+    h.history.tasks[1].cycles = 0;
+    const double ordered = simulate(ring_of(4), h.history).finish_ms;
+    CHECK(none_orders > 2 * kLong * kCycle);
+    CHECK(ordered + 0.1 < kLong * kCycle + 10);
+}
+
+TEST_CASE("random histories: all is delivered once, within bounds, whatever the buffers", "[torus]") {
+    constexpr std::uint64_t kSeed = 1995;
+    const unsigned cases = quick_cases(400, 4000);
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        SplitMix random(kSeed + i);
+        const raya_torus torus = random_torus(random, 6);
+        const History history = random_history(random, torus, 4 + random_below(random, 600));
+        AsyncMachine machine;
+        machine.buffer = 2 + random_below(random, 6);
+        CAPTURE(kSeed, i, torus_text(torus), history.tasks.size(), machine.buffer);
+        const AsyncResult r = simulate(torus, history, machine);
+        REQUIRE(r.delivered == history.messages.size());
+        const TorusResult traffic = traffic_of(torus, history);
+        const TorusTime bound = torus_time(torus, traffic);
+        CHECK(r.finish_ms >= bound.overlapped_ms * (1 - 1e-9));
+        double all = 0;  // one thing after another: something is always being done
+        for (std::size_t link = 0; link < r.links.size(); ++link) {
+            CHECK(r.links[link].words == traffic.link_words[link]);
+            CHECK(r.links[link].messages == traffic.link_packets[link]);
+            CHECK(r.links[link].busy_ms <= r.finish_ms * (1 + 1e-9));
+            all += 4e3 * static_cast<double>(traffic.link_words[link]) / 1.2e6;
+        }
+        for (std::size_t node = 0; node < r.nodes.size(); ++node) {
+            const AsyncNode& n = r.nodes[node];
+            CHECK(n.compute_ms == Approx(kCycle * static_cast<double>(traffic.load.per_pe[node])));
+            CHECK(n.compute_ms + n.messages_ms <= r.finish_ms * (1 + 1e-9));
+            all += n.compute_ms + n.messages_ms;
+        }
+        CHECK(r.finish_ms <= all * (1 + 1e-9));
+    }
+}
+
+TEST_CASE("what takes no time changes no order: a machine of processors alone", "[torus]") {
+    constexpr std::uint64_t kSeed = 805;
+    for (std::uint64_t i = 0; i < 50; ++i) {
+        SplitMix random(kSeed + i);
+        const raya_torus torus = random_torus(random, 4);
+        const History history = random_history(random, torus, 200);
+        CAPTURE(kSeed, i, torus_text(torus));
+        const AsyncMachine machine{.message_cycles = 0, .word_cycles = 0, .one_way = 0, .both_ways = 0};
+        const AsyncResult r = simulate(torus, history, machine);
+        // Each task begins when its message is there and the one before it at its node is done: by its own ready time.
+        CHECK(r.delivered == history.messages.size());
+        CHECK(total(r.nodes, &AsyncNode::messages_ms) == 0);
+        const TorusTime bound = torus_time(torus, traffic_of(torus, history));
+        CHECK(r.finish_ms >= bound.compute_ms * (1 - 1e-9));
+        CHECK(r.finish_ms <= simulate(torus, history).finish_ms * 1.5);
+    }
+}
+
+TEST_CASE("histories that are none are refused", "[torus]") {
+    SplitMix random(7);
+    const raya_torus torus = make_torus({3, 2, 1}, Links::kTorus3d);
+    const History right = random_history(random, torus, 100);
+    REQUIRE(right.tasks.size() > 50);
+    const auto refused = [&](const auto& spoil) {
+        History wrong = right;
+        spoil(wrong);
+        CHECK_THROWS_AS(simulate(torus, wrong), std::logic_error);
+    };
+    const auto is_ray = [](const HistoryMessage& m) { return m.kind != RAYA_KIND_RETURN; };
+    const auto ray = static_cast<std::size_t>(std::ranges::find_if(right.messages, is_ray) - right.messages.begin());
+    const auto caused = [](const HistoryTask& t) { return t.cause != HistoryTask::kInjection; };
+    const auto task = static_cast<std::size_t>(std::ranges::find_if(right.tasks, caused) - right.tasks.begin());
+    refused([&](History& h) { h.messages[ray].to ^= 1; });
+    refused([&](History& h) { h.messages[ray].kind = RAYA_KIND_RETURN; });
+    refused([&](History& h) { h.messages[ray].words = 0; });
+    refused([&](History& h) { h.messages[ray].task += 1; });
+    refused([&](History& h) { h.tasks[task].cause = HistoryTask::kInjection; });
+    refused([&](History& h) { h.tasks[task + 1].cause = h.tasks[task].cause; });
+    refused([&](History& h) { h.tasks[task].node = 6; });
+    refused([&](History& h) { h.tasks.pop_back(); });
+    refused([&](History& h) { h.tasks.front().cause = 0; });
+    CHECK_NOTHROW(simulate(torus, right));
+    CHECK(simulate(torus, {}).finish_ms == 0);
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,142 @@
+// Histories of renders against what the same renders counted: each node's cycles, every message over every link.
+#include <catch2/catch.hpp>
+#include <map>
+#include <stdexcept>
+
+#include "host/torus/async_machine.hpp"
+#include "host/torus/history_recorder.hpp"
+#include "host/torus/torus_time.hpp"
+#include "tests/thorough.hpp"
+#include "tests/torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+struct Recorded {
+    raya_torus torus{};
+    TorusResult result;
+    History history;
+};
+
+Recorded recorded(const Scene& scene, const TorusCase& c) {
+    TorusSettings settings = settings_of(c);
+    settings.history = true;
+    Session session(choose_device(""));
+    TorusRenderer renderer(session, scene, settings);
+    HistoryRecorder recorder(settings.torus, settings.packets);
+    Recorded r;
+    r.torus = settings.torus;
+    r.result = renderer.render({}, {}, {}, 1, [&](const NodeWork& work) { recorder.add(work); });
+    r.history = recorder.finish();
+    return r;
+}
+
+// Messages of a kind that a task of another kind, or an injection, has sent.
+std::map<std::uint32_t, std::uint64_t> made_by_others(const History& history) {
+    std::map<std::uint32_t, std::uint64_t> made;
+    for (const HistoryMessage& message : history.messages) {
+        const std::uint32_t cause = history.tasks[message.task].cause;
+        if (cause == HistoryTask::kInjection || history.messages[cause].kind != message.kind) ++made[message.kind];
+    }
+    return made;
+}
+
+std::vector<std::uint64_t> cycles_of_tasks(const Recorded& r) {
+    std::vector<std::uint64_t> cycles(raya_nodes(r.torus));
+    for (const HistoryTask& task : r.history.tasks) cycles[task.node] += task.cycles;
+    return cycles;
+}
+
+void check_against_counts(const Recorded& r) {
+    CHECK(cycles_of_tasks(r) == r.result.load.per_pe);
+    auto made = made_by_others(r.history);
+    for (const std::uint32_t kind : {RAYA_KIND_PRIMARY, RAYA_KIND_SHADOW}) CHECK(made[kind] == r.result.made[kind]);
+    CHECK(made[RAYA_KIND_RETURN] == r.result.returns);
+    const AsyncResult async = simulate(r.torus, r.history);
+    CHECK(async.delivered == r.history.messages.size());
+    for (std::size_t link = 0; link < async.links.size(); ++link) {
+        REQUIRE(async.links[link].words == r.result.link_words[link]);
+        REQUIRE(async.links[link].messages == r.result.link_packets[link]);
+    }
+    const TorusTime time = torus_time(r.torus, r.result);
+    CHECK(async.finish_ms >= time.overlapped_ms * (1 - 1e-9));
+    CHECK(async.finish_ms <= time.stepwise_ms);
+}
+
+const Scene& rich_scene() {
+    static const Scene scene = random_view_scene(kRichScenes[0]);
+    return scene;
+}
+
+TEST_CASE("a history has all that the render counted: several voxels a node, root or all, 2-D and 3-D", "[torus]") {
+    for (const TorusCase& c :
+         quick(2, {TorusCase{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}},
+                   TorusCase{
+                       .nodes = {4, 4, 4}, .links = Links::kTorus2d, .inject = Injection::kRoot, .packets = {22, true}},
+                   TorusCase{.nodes = {2, 3, 2}, .voxels = {5, 3, 4}, .inject = Injection::kRoot, .queue = 120},
+                   TorusCase{.nodes = {1, 1, 1}, .voxels = {3, 2, 2}}, TorusCase{.nodes = {2, 2, 1}, .group = 4}})) {
+        CAPTURE(case_text(c));
+        const Recorded r = recorded(rich_scene(), c);
+        check_against_counts(r);
+    }
+}
+
+TEST_CASE("telling costs changes nothing", "[torus]") {
+    const TorusCase c{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}};
+    CHECK(one_image(recorded(rich_scene(), c).result) == one_image(render_torus(rich_scene(), c)));
+}
+
+TEST_CASE("wide rays, which visit all voxels and go back to their hit, are in the history", "[torus]") {
+    const Recorded r = recorded(far_mirror_scene(1, "fp32"), {.nodes = {2, 2, 1}, .voxels = {3, 2, 2}});
+    check_against_counts(r);
+}
+
+TEST_CASE("rays that nodes make in vain are charged to those that they keep", "[torus]") {
+    const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
+    HistoryRecorder recorder(torus);
+    const auto primary = [](std::uint32_t pixel) { return raya_treated{pixel, RAYA_KIND_PRIMARY, 0, 100}; };
+    const std::vector<raya_treated> two = {primary(4), primary(5)};
+    recorder.add({.node = 0, .injection_cycles = 70});
+    recorder.add({.node = 1, .injection_cycles = 20});
+    recorder.add({.node = 0, .injection_cycles = 31, .treated = two, .queue = std::vector<raya_packet>(2)});
+    recorder.add({.node = 0, .injection_cycles = 5});
+    const History h = recorder.finish();
+    std::vector<std::uint64_t> cycles;
+    for (const HistoryTask& task : h.tasks) cycles.push_back(task.cycles);
+    CHECK(cycles == std::vector<std::uint64_t>{50, 51, 100, 100, 5, 20});
+    CHECK(h.tasks[5].node == 1);
+
+    HistoryRecorder lost(torus);
+    const std::vector<raya_treated> shadow = {{4, raya_state(RAYA_KIND_SHADOW, 0, 1), 0, 100}};
+    CHECK_THROWS_AS(lost.add({.node = 0, .treated = shadow, .queue = std::vector<raya_packet>(1)}), std::logic_error);
+}
+
+TEST_CASE("a history that was not asked for is refused", "[torus]") {
+    Session session(choose_device(""));
+    TorusRenderer renderer(session, rich_scene(), settings_of({.nodes = {2, 2, 2}, .voxels = {3, 3, 3}}));
+    CHECK_THROWS_AS(renderer.render({}, {}, {}, 1, [](const NodeWork&) {}), std::logic_error);
+}
+
+TEST_CASE("costs that a kernel forgets or charges twice are seen", "[.][faults]") {
+    const SourcePatch faults[] = {
+        {"torus/trace_voxel.cl", "add_cost(f, event, m, objects);", ""},
+        {"torus/flight.clh", "    add_cost(f, event, m, 1);", "    add_cost(f, event, m, 2);"},
+        {"torus/trace_voxel.cl", "f->treated.lane[lane] ? f->state.lane[lane] : RAYA_KIND_NONE", "f->state.lane[lane]"},
+        {"torus/flight.clh", "f->cycles.all = f->treated.all = (index)(0);", "f->treated.all = (index)(0);"}};
+    for (const SourcePatch& fault : faults) {
+        CAPTURE(fault.find);
+        TorusCase c{.nodes = {2, 2, 2}, .voxels = {3, 3, 3}, .queue = 60};
+        c.sources.patches = {fault};
+        bool seen = false;
+        try {
+            const Recorded r = recorded(rich_scene(), c);
+            seen = cycles_of_tasks(r) != r.result.load.per_pe;
+        } catch (const std::logic_error&) {
+            seen = true;
+        }
+        CHECK(seen);
+    }
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,283 @@
+// The history of a render on the torus, carried out by SimGrid (https://simgrid.org): processors and links are
+// SimGrid's, the tasks of a node are actors. Nothing of raya's simulator is in it but the rules, which
+// host/torus/async_machine.hpp has; what is written here is how they look where a simulator gives processes, semaphores
+// and messages.
+//
+//   simgrid_replay PLATFORM.xml REPLAY [--cfg=...]
+//
+// prints "finish_ms T" and "delivered N". Exit code 2 for what cannot be read, 4 where the machine stands still.
+// REPLAY, by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/packets.md), is text:
+//   machine NODES BUFFER ENTERING MESSAGE_CYCLES WORD_CYCLES
+//   t NODE CYCLES CAUSE             a task; CAUSE: the message whose arrival starts it, counted from 0, or -
+//   m WORDS CLASS DIRECTION NODE .. a message of the task before it; CLASS 0: return, 1: ray; its way
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <simgrid/s4u.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace sg = simgrid::s4u;
+
+constexpr double kFirst = 1e9;  // priority of the communication task over the main task, which has 1
+constexpr std::size_t kNoTask = SIZE_MAX;
+
+struct Hop {
+    int direction = 0;
+    std::size_t node = 0;
+};
+
+struct Message {
+    double words = 0;
+    int cls = 0;
+    std::vector<Hop> way;
+    std::size_t hop = 0;  // links behind it
+    std::size_t task = kNoTask;
+};
+
+struct Task {
+    std::size_t node = 0;
+    double cycles = 0;
+    std::vector<Message*> sends;
+};
+
+// One way of a link: what its output thread holds of each class, and whether its input thread has room.
+struct Port {
+    std::size_t from = 0, to = 0;
+    int direction = 0;
+    std::array<std::deque<Message*>, 2> out;
+    std::array<bool, 2> taken{};
+    std::array<sg::Mailbox*, 2> wire{};
+};
+
+struct Node {
+    sg::Host* host = nullptr;
+    sg::MutexPtr lock = sg::Mutex::create(), communication = sg::Mutex::create();
+    sg::ConditionVariablePtr changed = sg::ConditionVariable::create();
+    std::deque<std::size_t> queue, own;  // tasks that wait, tasks that it begins by itself
+};
+
+struct Machine {
+    std::size_t buffer = 0, entering = 0;
+    double message_cycles = 0, word_cycles = 0;
+    std::vector<Node> nodes;
+    std::vector<Task> tasks;
+    std::deque<Message> messages;
+    std::map<std::pair<std::size_t, int>, std::unique_ptr<Port>> ports;
+    std::size_t left = 0, delivered = 0;
+    double finished_s = 0;
+    sg::SemaphorePtr done = sg::Semaphore::create(0);
+
+    void finish_one() {
+        finished_s = sg::Engine::get_clock();
+        if (--left == 0) done->release();
+    }
+};
+
+Machine machine;
+
+void wake(Node& node) { node.changed->notify_all(); }
+
+// The processor's part of a message, before what the main task does and one after another.
+void handle(Node& node, const Message& message) {
+    const double cycles = machine.message_cycles + machine.word_cycles * message.words;
+    if (cycles <= 0) return;
+    node.communication->lock();
+    sg::this_actor::exec_init(cycles)->set_priority(kFirst)->wait();
+    node.communication->unlock();
+}
+
+void deliver(Message* message, std::size_t at) {
+    ++machine.delivered;
+    machine.finish_one();
+    if (message->task == kNoTask) return;
+    machine.nodes[at].queue.push_back(message->task);
+    wake(machine.nodes[at]);
+}
+
+// Into the output thread of the next link; `came` is the direction by which it came, -1 from the main task. Waits for
+// room.
+void put(std::size_t at, Message* message, int came) {
+    Node& node = machine.nodes[at];
+    const Hop next = message->way[message->hop];
+    Port& port = *machine.ports.at({at, next.direction});
+    std::deque<Message*>& room = port.out[message->cls];
+    const bool goes_on = message->cls == 0 || came == next.direction;
+    const std::size_t needs = goes_on ? 1 : machine.entering;
+    std::unique_lock<sg::Mutex> lock(*node.lock);
+    while (room.size() + needs > machine.buffer) node.changed->wait(lock);
+    room.push_back(message);
+    wake(node);
+}
+
+void main_task(std::size_t at) {
+    Node& node = machine.nodes[at];
+    for (;;) {
+        std::size_t task = kNoTask;
+        {
+            std::unique_lock<sg::Mutex> lock(*node.lock);
+            while (node.queue.empty() && node.own.empty()) node.changed->wait(lock);
+            auto& from = node.queue.empty() ? node.own : node.queue;
+            task = from.front();
+            from.pop_front();
+        }
+        if (machine.tasks[task].cycles > 0) sg::this_actor::execute(machine.tasks[task].cycles);
+        machine.finish_one();
+        for (Message* message : machine.tasks[task].sends)
+            if (message->way.empty())
+                deliver(message, at);
+            else
+                put(at, message, -1);
+    }
+}
+
+// Returns first.
+void output_thread(Port* port) {
+    Node& node = machine.nodes[port->from];
+    for (;;) {
+        int cls = -1;
+        {
+            std::unique_lock<sg::Mutex> lock(*node.lock);
+            const auto can = [&](int c) { return !port->out[c].empty() && !port->taken[c]; };
+            while (!can(0) && !can(1)) node.changed->wait(lock);
+            cls = can(0) ? 0 : 1;
+            port->taken[cls] = true;
+        }
+        Message* const message = port->out[cls].front();
+        handle(node, *message);
+        port->wire[cls]->put(message, static_cast<std::uint64_t>(4 * message->words));
+        port->out[cls].pop_front();
+        wake(node);
+    }
+}
+
+void input_thread(Port* port, int cls) {
+    Node& node = machine.nodes[port->to];
+    for (;;) {
+        Message* const message = port->wire[cls]->get<Message>();
+        handle(node, *message);
+        if (++message->hop == message->way.size())
+            deliver(message, port->to);
+        else
+            put(port->to, message, port->direction);
+        port->taken[cls] = false;
+        wake(machine.nodes[port->from]);
+    }
+}
+
+[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
+
+void read_message(std::istringstream& words) {
+    Message message;
+    if (machine.tasks.empty() || !(words >> message.words >> message.cls)) fail("a message without a task");
+    for (Hop hop; words >> hop.direction >> hop.node;) message.way.push_back(hop);
+    machine.messages.push_back(message);
+    machine.tasks.back().sends.push_back(&machine.messages.back());
+}
+
+void read_task(std::istringstream& words) {
+    Task task;
+    std::string cause;
+    if (!(words >> task.node >> task.cycles >> cause) || task.node >= machine.nodes.size()) fail("no task");
+    if (cause == "-")
+        machine.nodes[task.node].own.push_back(machine.tasks.size());
+    else
+        machine.messages.at(std::stoul(cause)).task = machine.tasks.size();
+    machine.tasks.push_back(task);
+}
+
+void read_replay(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) fail("cannot be opened: " + file);
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream words(line);
+        std::string what;
+        words >> what;
+        if (what == "machine") {
+            std::size_t nodes = 0;
+            words >> nodes >> machine.buffer >> machine.entering >> machine.message_cycles >> machine.word_cycles;
+            machine.nodes = std::vector<Node>(nodes);
+        } else if (what == "t") {
+            read_task(words);
+        } else if (what == "m") {
+            read_message(words);
+        } else {
+            fail("a line of another kind: " + line);
+        }
+    }
+    machine.left = machine.tasks.size() + machine.messages.size();
+}
+
+void start(const std::string& name, sg::Host* host, const std::function<void()>& code) {
+    sg::Actor::create(name, host, code)->daemonize();
+}
+
+// Threads for the links that are used.
+void start_actors() {
+    for (const Task& task : machine.tasks)
+        for (const Message* message : task.sends) {
+            std::size_t from = task.node;
+            for (const Hop& hop : message->way) {
+                auto& port = machine.ports[{from, hop.direction}];
+                if (!port) {
+                    port = std::make_unique<Port>();
+                    port->from = from;
+                    port->to = hop.node;
+                    port->direction = hop.direction;
+                }
+                from = hop.node;
+            }
+        }
+    for (auto& [place, port] : machine.ports) {
+        Port* const p = port.get();
+        const std::string name = std::to_string(place.first) + ":" + std::to_string(place.second);
+        for (int cls = 0; cls < 2; ++cls) {
+            p->wire[cls] = sg::Mailbox::by_name(name + ":" + std::to_string(cls));
+            start("in " + name, machine.nodes[p->to].host, [p, cls] { input_thread(p, cls); });
+        }
+        start("out " + name, machine.nodes[p->from].host, [p] { output_thread(p); });
+    }
+    for (std::size_t node = 0; node < machine.nodes.size(); ++node)
+        start("main " + std::to_string(node), machine.nodes[node].host, [node] { main_task(node); });
+    if (machine.left > 0) sg::Actor::create("end", machine.nodes[0].host, [] { machine.done->acquire(); });
+}
+
+}  // namespace
+
+int main(int argc, char* argv[]) {
+    sg::Engine engine(&argc, argv);
+    // A link's time is its words over its rate, as on the wire; no allowance for the protocols of other networks.
+    sg::Engine::set_config("network/model:CM02");
+    sg::Engine::set_config("network/crosstraffic:0");
+    sg::Engine::set_config("contexts/stack-size:128");
+    if (argc != 3) {
+        std::cerr << "simgrid_replay PLATFORM.xml REPLAY\n";
+        return 2;
+    }
+    try {
+        engine.load_platform(argv[1]);
+        read_replay(argv[2]);
+        for (std::size_t node = 0; node < machine.nodes.size(); ++node)
+            machine.nodes[node].host = sg::Host::by_name(std::to_string(node));
+        start_actors();
+    } catch (const std::exception& error) {
+        std::cerr << "simgrid_replay: " << error.what() << '\n';
+        return 2;
+    }
+    engine.run();
+    if (machine.left > 0) {
+        std::cerr << "simgrid_replay: the machine stands still\n";
+        return 4;
+    }
+    std::cout.precision(12);
+    std::cout << "finish_ms " << 1e3 * machine.finished_s << "\ndelivered " << machine.delivered << '\n';
+    return 0;
+}
