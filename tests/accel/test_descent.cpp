@@ -108,11 +108,11 @@ TEST_CASE("aimed rays hit down a tree what they hit of all objects, in every for
 
 TEST_CASE("boxes without room for rounding, outlines without an edge and filters without a bound are seen",
           "[descent]") {
-    struct Fault {
+    struct Planted {
         const char* format;
         SourcePatch patch;
     };
-    const std::vector<Fault> faults = {
+    const std::vector<Planted> faults = {
         {"spa22", {"geometry/outline_filter.clh", "5.0f * RAYA_ERROR", "0.1f * RAYA_ERROR"}},
         {"fp32",
          {"bvh/leaves.clh", "edge < edges; edge += RAYA_LANES)\n        crossed",

@@ -48,7 +48,7 @@ TEST_CASE("random views are even over the zone of the sphere", "[view]") {
         ++heights[std::min(kParts - 1, std::max(0, static_cast<int>(part * kParts)))];
         ++azimuths[std::min(kParts - 1, static_cast<int>(turn * kParts))];
     }
-    CHECK(all.size() > kViews * 0.99);
+    CHECK(static_cast<double>(all.size()) > kViews * 0.99);
     for (int i = 0; i < kParts; ++i) {  // 500 expected, standard deviation 21
         CHECK(std::abs(heights[i] - kViews / kParts) < 100);
         CHECK(std::abs(azimuths[i] - kViews / kParts) < 100);
