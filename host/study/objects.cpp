@@ -45,6 +45,8 @@ StudyTable table_of_rows(const Rows& rows) {
                      {"overlapped +-", [](const Row& row) { return half_width(row.overlapped()); }, "ms"},
                      mean("stepwise", &TorusRun::stepwise_ms, "ms"),
                      {"stepwise +-", [](const Row& row) { return half_width(row.stepwise()); }, "ms"},
+                     mean("asynchronous", &TorusRun::asynchronous_ms, "ms"),
+                     {"asynchronous +-", [](const Row& row) { return half_width(row.asynchronous()); }, "ms"},
                      mean("busiest node computes", &TorusRun::compute_ms, "ms"),
                      mean("the root alone", &TorusRun::root_ms, "ms")});
 }
@@ -62,7 +64,9 @@ std::vector<StudyTable> tables_of(const ObjectsRuns& all, const Ratios& ratios, 
                   {"overlapped", [](const Ratio& one) { return one.overlapped.mean; }},
                   {"overlapped +-", [](const Ratio& one) { return half_width(one.overlapped); }},
                   {"stepwise", [](const Ratio& one) { return one.stepwise.mean; }},
-                  {"stepwise +-", [](const Ratio& one) { return half_width(one.stepwise); }}}),
+                  {"stepwise +-", [](const Ratio& one) { return half_width(one.stepwise); }},
+                  {"asynchronous", [](const Ratio& one) { return one.asynchronous.mean; }},
+                  {"asynchronous +-", [](const Ratio& one) { return half_width(one.asynchronous); }}}),
         table_of("objects-growth", "Why time grows less than the objects: objects / time as a product", growth,
                  {{"kind", &GrowthRow::kind},
                   {"protocol", &GrowthRow::protocol},
@@ -112,12 +116,15 @@ std::vector<StudyPlot> plots_of(const ObjectsRuns& all, const Ratios& ratios) {
         depth.series.push_back(
             line_with_bars(kind, where(all.primary, [&](const PrimaryRow& row) { return row.kind == kind; }),
                            [](const PrimaryRow& row) { return estimate_of(row.voxels); }));
-    return {time_plot(all.rows, kPaperProtocol, "objects", "Time by the protocol of Yoshitani & Yamazaki, overlapped",
+    return {time_plot(all.rows, kPaperProtocol, "objects-async",
+                      "Time by the protocol of Yoshitani & Yamazaki, without supersteps", &Row::asynchronous),
+            time_plot(all.rows, kPaperProtocol, "objects", "Time by the protocol of Yoshitani & Yamazaki, overlapped",
                       &Row::overlapped),
             time_plot(all.rows, kPaperProtocol, "objects-stepwise",
                       "Time by the protocol of Yoshitani & Yamazaki, stepwise", &Row::stepwise),
             time_plot(all.rows, kOwnProtocol, "objects-raya", "Time by raya's protocol, overlapped", &Row::overlapped),
-            ratio, depth};
+            ratio,
+            depth};
 }
 
 }  // namespace

@@ -65,8 +65,10 @@ ObjectsRuns run_objects(Session& session, const std::vector<int>& counts, std::u
         for (const Protocol& protocol : kProtocols) {
             const auto row = [&](const char* kind, const std::vector<Scene>& some) {
                 all.rows.push_back({count, kind, protocol.name});
+                TorusPlan plan = plan_of(protocol);
+                plan.asynchronous = true;
                 for (const Scene& scene : some)
-                    all.rows.back().runs.push_back(run_on_torus(session, {scene.name, scene}, size, plan_of(protocol)));
+                    all.rows.back().runs.push_back(run_on_torus(session, {scene.name, scene}, size, plan));
             };
             row(kEven, {scenes.even});
             row(kRandom, scenes.random);
@@ -118,8 +120,8 @@ ObjectsRatios ratios_of(const ObjectsRows& rows) {
                     return some[i].of(
                         [&](const TorusRun& run) { return std::invoke(time, run) / std::invoke(time, one); });
                 };
-                all.push_back(
-                    {some[i].objects, kind, protocol, over(&TorusRun::overlapped_ms), over(&TorusRun::stepwise_ms)});
+                all.push_back({some[i].objects, kind, protocol, over(&TorusRun::overlapped_ms),
+                               over(&TorusRun::stepwise_ms), over(&TorusRun::asynchronous_ms)});
             }
         }
     return all;

@@ -26,6 +26,7 @@ struct ObjectsRow {
     }
     Estimate overlapped() const { return of(&TorusRun::overlapped_ms); }
     Estimate stepwise() const { return of(&TorusRun::stepwise_ms); }
+    Estimate asynchronous() const { return of(&TorusRun::asynchronous_ms); }
     double overlapped_ms() const { return overlapped().mean; }
     double root_ms() const { return of(&TorusRun::root_ms).mean; }
     double tests_per_ray() const { return of(&TorusRun::tests_per_ray).mean; }
@@ -85,7 +86,7 @@ ObjectsRows of(const ObjectsRows& rows, const std::string& kind, const std::stri
 struct ObjectsRatio {
     int objects = 0;
     std::string kind, protocol;
-    Estimate overlapped, stepwise;
+    Estimate overlapped, stepwise, asynchronous;
 };
 using ObjectsRatios = std::vector<ObjectsRatio>;
 

@@ -10,6 +10,8 @@
 #include "host/machine/t805.hpp"
 #include "host/report/render_report.hpp"
 #include "host/scene/generate.hpp"
+#include "host/torus/async_machine.hpp"
+#include "host/torus/history_recorder.hpp"
 #include "host/torus/queue_search.hpp"
 #include "host/torus/standstill.hpp"
 #include "kernels/shared/traffic.h"
@@ -32,6 +34,7 @@ TorusSettings settings_of(const TorusPlan& plan, std::uint32_t size) {
     s.pixels = plan.pixels;
     s.bounces = plan.bounces.value_or(s.machine.bounces);
     s.format = s.machine.format;
+    s.history = plan.asynchronous;
     return s;
 }
 
@@ -112,10 +115,13 @@ TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_
     while (run.plan.queue > 0 && run.plan.queue < shortest) run.plan.queue *= 2;
     settings.queue = run.plan.queue;
     TorusRenderer renderer(session, scene.scene, settings);
+    HistoryRecorder recorder(run.torus, plan.packets);
+    NodeWorkSink work_sink;
+    if (plan.asynchronous) work_sink = [&](const NodeWork& work) { recorder.add(work); };
     try {
-        run.result = renderer.render({}, sink);
+        run.result = renderer.render({}, sink, {}, 1, work_sink);
     } catch (const Standstill&) {
-        if (plan.queue == 0) throw;
+        if (plan.queue == 0 || plan.asynchronous) throw;
         QueueTrial trial = renderer.queue_trial();
         trial.most = std::max(default_queue(raya_nodes(run.torus)), shortest);
         trial.ends = [&](const NodeBuffers& buffers) { return renders(renderer, buffers.queue, sink, run.result); };
@@ -124,6 +130,7 @@ TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_
         run.plan.queue = found.queue;
     }
     complete(run);
+    if (plan.asynchronous) run.time.asynchronous = simulate(run.torus, recorder.finish()).time();
     return run;
 }
 

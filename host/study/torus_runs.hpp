@@ -26,6 +26,7 @@ struct TorusPlan {
     PixelSubset pixels = {};
     std::uint32_t queue = 0;                    // packets; 0: the renderer's default
     std::optional<std::uint32_t> bounces = {};  // empty: the machine's
+    bool asynchronous = false;                  // simulated without supersteps too
 };
 
 /// Who makes primary rays, and what packets are charged for.
@@ -59,6 +60,7 @@ struct TorusRun {
     double work_ms() const;  // modelled: what all nodes compute together
     double overlapped_ms() const { return time.overlapped_ms; }
     double stepwise_ms() const { return time.stepwise_ms; }
+    double asynchronous_ms() const { return time.asynchronous.value().finish_ms; }  // where the plan asked for it
     double compute_ms() const { return time.compute_ms; }
     double copies() const { return static_cast<double>(result.copies); }
     double steps() const { return static_cast<double>(result.events[RAYA_STEPS]); }
@@ -77,7 +79,8 @@ struct TorusRun {
 };
 
 /// `size` x `size` pixels, without a limit of memory. Where the plan's queue is too short for the machine to come to an
-/// end, one of twice the length is tried, and so on up to the default; the run's plan says which it was. Throws
+/// end, one of twice the length is tried, and so on up to the default; the run's plan says which it was. Not so where
+/// it is simulated without supersteps, which takes one render: Standstill then. Throws
 /// UserError, DeviceError as TorusRenderer does. `sink` as in TorusRenderer::render(); of a machine that stood still it
 /// has been told too.
 TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_t size, const TorusPlan& plan,

@@ -99,8 +99,11 @@ class Browser:
             raise RuntimeError(json.dumps(answer["exceptionDetails"])[:600])
         return answer["result"].get("value")
 
-    def picture(self, file, whole=True):
+    def picture(self, file, tallest=12000):
+        """Of the page from its top; as far as `tallest` pixels, as Chromium refuses larger ones."""
         import base64
-        data = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
+        width, height = self.value("[innerWidth, document.documentElement.scrollHeight]")
+        clip = {"x": 0, "y": 0, "width": width, "height": min(height, tallest), "scale": 1}
+        data = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)["data"]
         with open(file, "wb") as out:
             out.write(base64.b64decode(data))
