@@ -148,7 +148,7 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
     with_grid.accel_at = word_number(at);
     job.set_header(with_grid);
     return {.kind = AccelKind::kGrid,
-            .words = next - at,
+            .words = words.size(),
             .divisions = {p.grid.divisions[0], p.grid.divisions[1], p.grid.divisions[2]},
             .copies = p.copies(),
             .apart = header.apart};
