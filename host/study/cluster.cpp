@@ -53,9 +53,9 @@ struct Figure {
     Source source;
     const char* place;
 };
-using Member_figure = double (*)(const Member&);
+using MemberFigure = double (*)(const Member&);
 
-const Figure<Member_figure> kSought[] = {
+constexpr Figure<MemberFigure> kSought[] = {
     {"u(0)", "", [](const Member& m) { return m.u_0; }, paper::kImbalance0, Source::kDerived, "Table 3"},
     {"pixels recomputed", "%", [](const Member& m) { return m.recomputed; },
      50 * (paper::kRecomputedLeast + paper::kRecomputedMost), Source::kDerived, "Table 4"},
@@ -63,7 +63,7 @@ const Figure<Member_figure> kSought[] = {
      "Table 2"},
 };
 
-const Figure<Member_figure> kFree[] = {
+constexpr Figure<MemberFigure> kFree[] = {
     {"u(16)", "", [](const Member& m) { return m.u_16; }, paper::kImbalance16, Source::kDerived, "Table 3"},
     {"speed-up, p = 16", "", [](const Member& m) { return m.speedup(); }, paper::kSpeedup16, Source::kPrinted,
      "abstract"},
@@ -83,7 +83,7 @@ const Figure<Member_figure> kFree[] = {
 
 using Members = std::vector<Member>;
 
-Comparison comparison_of(const Members& members, const Figure<Member_figure>& figure, bool beside, const char* remark) {
+Comparison comparison_of(const Members& members, const Figure<MemberFigure>& figure, bool beside, const char* remark) {
     const Estimate mean = mean_of_each(members, figure.of);
     return {figure.what,
             figure.unit,
@@ -94,7 +94,7 @@ Comparison comparison_of(const Members& members, const Figure<Member_figure>& fi
             mean.half_width};
 }
 
-Claim claim_of(const Members& members, const Figure<Member_figure>& figure) {
+Claim claim_of(const Members& members, const Figure<MemberFigure>& figure) {
     const auto values = each(members, figure.of);
     const int digits = figure.paper < 10 ? 3 : 0;
     return {paper::kSpa, figure.place,

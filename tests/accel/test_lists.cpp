@@ -83,7 +83,7 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words s
         CHECK(summary.copies == p.copies());
         CHECK(summary.apart == apart.size());
         CHECK(summary.divisions == divisions);
-        CHECK(job.words().size() - job.header().accel_at == summary.words);
+        CHECK(job.words().size() - before.size() == summary.words);
         raya_job unlinked = job.header();
         unlinked.accel_at = 0;
         job.set_header(unlinked);
