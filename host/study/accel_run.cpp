@@ -13,6 +13,7 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "host/study/embree_peer.hpp"
+#include "host/study/peer.hpp"
 
 namespace raya {
 namespace {

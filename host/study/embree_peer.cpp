@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <sstream>
-#include <system_error>
 
-#include "host/files/program.hpp"
+#include "host/study/peer.hpp"
 
 namespace raya {
 namespace {
@@ -44,18 +43,10 @@ PeerAnswer peer_answer(const std::string& printed) {
 
 PeerAnswer ask_embree(const std::filesystem::path& program, const std::string& nff, const PeerPicture& picture) {
     const std::string size = fmt::format("{}x{}", picture.side, picture.side);
-    try {
-        // The scene goes in as a temporary file without a name.
-        const ProgramRun run = run_program({program.string(), "/dev/stdin", size, std::to_string(picture.bounces),
-                                            "centres", std::to_string(picture.samples)},
-                                           nff);
-        if (run.succeeded()) return peer_answer(run.out);
-        if (run.not_started != 0) throw PeerFailure(std::generic_category().message(run.not_started));
-        const std::string words = last_line(run.err);
-        throw PeerFailure(words.empty() ? ending_text(run.status) : words);
-    } catch (const std::system_error& error) {
-        throw PeerFailure(error.what());
-    }
+    // The scene goes in as a temporary file without a name.
+    return peer_answer(peer_output({program.string(), "/dev/stdin", size, std::to_string(picture.bounces), "centres",
+                                    std::to_string(picture.samples)},
+                                   nff));
 }
 
 }  // namespace raya

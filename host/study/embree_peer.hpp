@@ -6,14 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/error.hpp"
-
 namespace raya {
-
-/// The program could not be run, or failed with a scene; what it said.
-struct PeerFailure : UserError {
-    using UserError::UserError;
-};
 
 /// What it is asked for.
 struct PeerPicture {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "host/files/program.hpp"
+#include "host/study/peer.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/simgrid_peer.hpp"

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 
-#include "host/study/embree_peer.hpp"
 #include "host/torus/async_machine.hpp"
 
 namespace raya {
@@ -18,7 +17,8 @@ struct SimgridAnswer {
 /// Reads what simgrid_replay prints. PeerFailure where it is nothing of the kind.
 SimgridAnswer simgrid_answer(const std::string& printed);
 
-/// Runs the program once; platform and replay lie in a folder for temporary files meanwhile. PeerFailure.
+/// Runs the program once; platform and replay lie in a folder for temporary files meanwhile. PeerFailure;
+/// UserError where their files cannot be written.
 SimgridAnswer ask_simgrid(const std::filesystem::path& program, const raya_torus& torus, const History& history,
                           const AsyncMachine& machine);
 

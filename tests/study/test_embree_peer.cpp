@@ -5,6 +5,7 @@
 
 #include "host/files/whole_file.hpp"
 #include "host/study/embree_peer.hpp"
+#include "host/study/peer.hpp"
 #include "tests/files/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
@@ -71,10 +72,10 @@ TEST_CASE("the program is given the scene, the size, the bounces and the samples
 
 TEST_CASE("a program that fails is told of in its own words, else by how it ended", "[study]") {
     CHECK_THAT(failure_of("echo 'embree_peer: a checker on a cone' >&2; exit 2"), Contains("a checker on a cone"));
-    CHECK(failure_of("exit 3") == "exit code 3");
-    CHECK(failure_of("kill -11 $$") == "signal 11 (SIGSEGV)");
+    CHECK(failure_of("exit 3") == "peer: exit code 3");
+    CHECK(failure_of("kill -11 $$") == "peer: signal 11 (SIGSEGV)");
     CHECK_THAT(failure_of("exit 0"), Contains("does not tell its times"));
-    CHECK_THROWS_WITH(ask_embree("/nowhere/peer", "scene", {.side = 8}), Contains("No such file"));
+    CHECK_THROWS_WITH(ask_embree("/nowhere/peer", "scene", {.side = 8}), Contains("peer: No such file"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "host/study/peer.hpp"
 #include "host/study/simgrid_peer.hpp"
 #include "host/study/studies.hpp"
 #include "tests/paths.h"
