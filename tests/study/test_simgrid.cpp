@@ -2,9 +2,12 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "host/files/whole_file.hpp"
 #include "host/study/peer.hpp"
 #include "host/study/simgrid_peer.hpp"
 #include "host/study/studies.hpp"
+#include "host/torus/simgrid_files.hpp"
+#include "tests/files/scratch_folder.hpp"
 #include "tests/paths.h"
 #include "tests/torus/random_history.hpp"
 
@@ -26,6 +29,28 @@ TEST_CASE("a time and a number of messages are read, anything else is refused", 
 TEST_CASE("without simgrid_replay beside the program the study says what to install", "[study]") {
     const std::string lack = lack_of_simgrid();  // the test programs lie in a folder of their own
     CHECK_THAT(lack, Catch::Contains("tools/setup --studies") && Catch::Contains("libsimgrid-dev"));
+}
+
+TEST_CASE("simgrid_replay refuses what is no replay", "[study]") {
+    if (!std::filesystem::exists(replay_program())) {
+        WARN("SimGrid is not installed: tools/setup --studies");
+        return;
+    }
+    const ScratchFolder folder;
+    const std::string platform = folder / "platform.xml", replay = folder / "replay";
+    write_whole_file(platform, simgrid_platform(make_torus({2, 1, 1}, Links::kTorus3d), {}));
+    const std::string begin = "machine 2 4 2 19 2\nt 0 5 -\n";
+    const auto peer = [&](const std::string& text) {
+        write_whole_file(replay, text);
+        return peer_output({replay_program().string(), platform, replay, "--log=root.thres:error"});
+    };
+    CHECK(simgrid_answer(peer(begin + "m 16 1 0 1\nt 1 5 0\n")).delivered == 1);
+    for (const std::string& text :
+         {std::string("machine 2 four\n"), std::string("m 16 1 0 1\n"), begin + "m 16 3\n", begin + "m 16 1 0 7\n",
+          begin + "m 16 1 0\n", begin + "m 16 1 x\n", begin + "t 2 5 -\n", begin + "t 0 5 9\n", begin + "x\n"}) {
+        CAPTURE(text);
+        CHECK_THROWS_WITH(peer(text), Catch::StartsWith("simgrid_replay: "));
+    }
 }
 
 // Times agree where no two messages ask for one place at the same instant; where they do, who comes first is each

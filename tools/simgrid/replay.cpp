@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <deque>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -21,6 +22,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -178,7 +180,12 @@ void input_thread(Port* port, int cls) {
 void read_message(std::istringstream& words) {
     Message message;
     if (machine.tasks.empty() || !(words >> message.words >> message.cls)) fail("a message without a task");
-    for (Hop hop; words >> hop.direction >> hop.node;) message.way.push_back(hop);
+    if (message.cls != 0 && message.cls != 1) fail("a message that is neither return nor ray");
+    for (Hop hop; words >> hop.direction;) {
+        if (!(words >> hop.node) || hop.node >= machine.nodes.size()) fail("a way to no node");
+        message.way.push_back(hop);
+    }
+    if (!words.eof()) fail("a way that is no way");
     machine.messages.push_back(message);
     machine.tasks.back().sends.push_back(&machine.messages.back());
 }
@@ -203,7 +210,9 @@ void read_replay(const std::string& file) {
         words >> what;
         if (what == "machine") {
             std::size_t nodes = 0;
-            words >> nodes >> machine.buffer >> machine.entering >> machine.message_cycles >> machine.word_cycles;
+            if (!(words >> nodes >> machine.buffer >> machine.entering >> machine.message_cycles >>
+                  machine.word_cycles))
+                fail("no machine");
             machine.nodes = std::vector<Node>(nodes);
         } else if (what == "t") {
             read_task(words);
