@@ -1,11 +1,9 @@
 #include "host/study/references.hpp"
 
-#include <array>
-
 namespace raya {
 
 std::span<const Reference> references() {
-    static const std::array<Reference, 12> all = {{
+    static const Reference all[] = {
         {"Abramowitz & Stegun",
          "Milton Abramowitz, Irene A. Stegun (eds.): Handbook of Mathematical Functions. National Bureau of Standards, "
          "Applied Mathematics Series 55, 1964."},
@@ -40,7 +38,7 @@ std::span<const Reference> references() {
         {"Yoshitani & Yamazaki",
          "Yoshitani, Yamazaki: ray tracing by division of space on 64 transputers connected as a torus. About 1995; "
          "where it appeared is not known to us."},
-    }};
+    };
     return all;
 }
 

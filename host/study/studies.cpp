@@ -1,11 +1,9 @@
 #include "host/study/studies.hpp"
 
-#include <array>
-
 namespace raya {
 
 std::span<const Study> studies() {
-    static const std::array<Study, 22> all = {{
+    static const Study all[] = {
         {"fig7", "Load of each PE, column split and cyclic mapping", true, study_fig7},
         {"fig8", "Imbalance against the offset p", true, study_fig8},
         {"fig9", "Speed-up against the number of PEs, both folds, and the mappings of CAP and Pixel Machine", true,
@@ -32,7 +30,7 @@ std::span<const Study> studies() {
         {"inject", "Torus: the root makes all primary rays, or all nodes do", true, study_inject},
         {"hybrid", "Torus: groups of nodes share the screen, each divides space", false, study_hybrid},
         {"simgrid", "Torus without supersteps: raya's simulator beside SimGrid", true, study_simgrid, lack_of_simgrid},
-    }};
+    };
     return all;
 }
 
