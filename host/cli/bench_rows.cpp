@@ -94,7 +94,6 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
     if (way != "none" && way != "grid" && way != "bvh")
         throw UserError(fmt::format("--ways {}: must be none, grid, bvh or torus", way));
     s.accel = parse_accel(way);
-    s.keep_costs = false;  // as of a render that nobody asked for them
     return row_of(said_of("render, " + way, scene, s, array_text(s)), format,
                   std::make_shared<RingRenderer>(session, scene, s), events_of_ring,
                   [](const RingResult& r) { return r.render_s; });

@@ -162,13 +162,14 @@ void RingRenderer::render_block(std::uint32_t block, RingResult& result, const P
 void RingRenderer::prepare(RingResult& result) {
     const StepLog::Step step = session_.step("prepare");
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
-    const CostImage none{settings_.mapping.width, settings_.mapping.height,
-                         std::vector<std::uint64_t>(keeps_costs() ? pixels : 0)};
-    if (counters_.size() > 1) result.all.cost = none;
+    std::optional<CostImage> none;
+    if (keeps_costs())
+        none = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
+    if (counters_.size() > 1) result.all.kept_cost = none;
     for (PassCounters& counters : counters_) {
         Phase phase;
         phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
-        phase.cost = none;
+        phase.kept_cost = none;
         result.phases.push_back(std::move(phase));
         tracer_->clear(counters);
     }
@@ -224,8 +225,8 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
         for_each_pixel(settings_.mapping, range, window_, [&](std::size_t from, std::size_t to) {
-            result.phases[i].cost.cycles[to] = cycles[from];
-            if (counters_.size() > 1) result.all.cost.cycles[to] += cycles[from];
+            result.phases[i].kept_cost->cycles[to] = cycles[from];
+            if (counters_.size() > 1) result.all.kept_cost->cycles[to] += cycles[from];
         });
     }
 }

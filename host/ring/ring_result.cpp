@@ -1,6 +1,13 @@
 #include "host/ring/ring_result.hpp"
 
+#include <stdexcept>
+
 namespace raya {
+
+const CostImage& Phase::cost() const {
+    if (!kept_cost) throw std::logic_error("costs of pixels that were not kept: RingSettings::keep_costs");
+    return *kept_cost;
+}
 
 double trace_seconds(const RingResult& result) {
     double ns = 0;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/accel.hpp"
 #include "host/cl/profile.hpp"
 #include "host/image/image.hpp"
+#include "host/machine/accel.hpp"
 #include "host/machine/communication.hpp"
 #include "host/machine/load.hpp"
 #include "host/machine/machine.hpp"
@@ -24,8 +24,11 @@ inline constexpr const char *kTracePass = "trace", *kSupersamplePass = "supersam
 struct Phase {
     std::string name;  // kTracePass, kSupersamplePass
     EventCounts events{};
-    Load load;       // modelled cycles of each PE, from its own counters
-    CostImage cost;  // modelled cycles of each pixel; empty where they are not kept
+    Load load;                           // modelled cycles of each PE, from its own counters
+    std::optional<CostImage> kept_cost;  // where RingSettings::keep_costs asks for it
+
+    /// Modelled cycles of each pixel. std::logic_error where nobody asked for them.
+    const CostImage& cost() const;
 };
 
 struct RingResult {
@@ -46,8 +49,8 @@ struct RingResult {
     double accel_s = 0, build_s = 0, render_s = 0;
     std::vector<LabelSummary> commands;
 
-    /// Modelled cycles of each pixel in all phases.
-    const CostImage& cost() const { return phases.size() == 1 ? phases.front().cost : all.cost; }
+    /// Modelled cycles of each pixel in all phases. std::logic_error where nobody asked for them.
+    const CostImage& cost() const { return (phases.size() == 1 ? phases.front() : all).cost(); }
 };
 
 /// Seconds that tracing one image took on the device; by the host's clock where the device does not time its commands.

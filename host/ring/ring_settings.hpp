@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "host/machine/accel.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/machine/accel.hpp"
 #include "host/machine/machine.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"
@@ -20,7 +20,7 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
-    bool keep_costs = true;  // of each pixel, 8 bytes on the host; a dynamic distribution is simulated from them
+    bool keep_costs = false;  // of each pixel, 8 bytes on the host; a dynamic distribution keeps them by itself
     Accel accel;
     KernelChoice kernels;
     std::uint64_t device_pixels = 1 << 22;  // of all PEs that lie on the device at a time, 20 bytes each; smoothed

@@ -30,7 +30,6 @@ RingSettings ring_settings(const AccelSettings& settings, AccelKind kind) {
     ring.machine = machine_named("grande");
     ring.mapping = make_mapping(tiles_mapping(tile, tile), {settings.side, settings.side}, settings.side);
     ring.bounces = settings.bounces;
-    ring.keep_costs = false;
     ring.accel.kind = kind;
     return ring;
 }

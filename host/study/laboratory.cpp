@@ -14,11 +14,12 @@ Costs render_costs(Session& session, const LabelledScene& scene, std::uint32_t s
     settings.bounces = machine_named("spa").bounces;
     settings.mapping = cyclic(size, 16 % size);
     settings.antialias.method = method;
-    RingResult result = RingRenderer(session, scene.scene, settings).render();
+    settings.keep_costs = true;
+    const RingResult result = RingRenderer(session, scene.scene, settings).render();
     Costs costs;
     costs.label = scene.label;
-    costs.trace = std::move(result.phases.front().cost);
-    if (method == AntialiasMethod::kSupersample) costs.supersample = std::move(result.phases.back().cost);
+    costs.trace = result.phases.front().cost();
+    if (method == AntialiasMethod::kSupersample) costs.supersample = result.phases.back().cost();
     costs.events = result.phases.front().events;
     costs.objects = scene.scene.object_count();
     costs.job_words = result.pe_memory.job_words;

@@ -19,8 +19,8 @@ SpaRun run_of(const RingSettings& settings, RingResult result) {
     SpaRun run;
     run.machine = settings.machine.name;
     for (Phase& phase : result.phases) {
+        run.cost.push_back(phase.cost());
         run.phases.push_back(std::move(phase.load));
-        run.cost.push_back(std::move(phase.cost));
     }
     run.smoothing = smoothing_cycles(settings.antialias.method, largest_share(settings.mapping));
     run.communication = result.communication;
@@ -53,6 +53,7 @@ SpaRun run_on_spa(Session& session, const LabelledScene& scene, std::uint32_t si
     settings.bounces = settings.machine.bounces;
     settings.mapping = cyclic(size, size, pes, offset);
     settings.antialias.method = method;
+    settings.keep_costs = true;
     try {
         return run_of(settings, RingRenderer(session, scene.scene, settings).render());
     } catch (const DoesNotFit&) {

@@ -70,8 +70,13 @@ class PlainImages {
         const auto key = std::tuple(c.format, c.sampling, width, height, pixels_of_unit);
         const auto found = images_.find(key);
         if (found != images_.end()) return found->second;
-        const RingSettings settings = settings_of(
-            {.width = width, .height = height, .pes = 1, .offset = 0, .sampling = c.sampling, .format = c.format});
+        const RingSettings settings = settings_of({.width = width,
+                                                   .height = height,
+                                                   .pes = 1,
+                                                   .offset = 0,
+                                                   .sampling = c.sampling,
+                                                   .format = c.format,
+                                                   .keep_costs = true});
         RingRenderer renderer(session_, grid_scene(height, c.sampling, pixels_of_unit), settings);
         return images_.emplace(key, renderer.render()).first->second;
     }
@@ -80,7 +85,8 @@ class PlainImages {
     std::map<std::tuple<std::string, Sampling, std::uint32_t, std::uint32_t, double>, RingResult> images_;
 };
 
-RingResult render_case(Session& session, const RingCase& c) {
+RingResult render_case(Session& session, RingCase c) {
+    c.keep_costs = true;
     return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsOfUnit), settings_of(c)).render();
 }
 
@@ -144,9 +150,9 @@ void check_supersampled(const RingResult& result, const RingResult& plain, const
     CHECK(unlike_values(result.image, supersampled(plain.image, fine.image, mask, c)) == 0);
     REQUIRE(result.phases.size() == 2);
     CHECK(result.phases[0].events == plain.all.events);
-    CHECK(result.phases[0].cost.cycles == plain.cost().cycles);
+    CHECK(result.phases[0].cost().cycles == plain.cost().cycles);
     CHECK(result.phases[1].events[RAYA_PRIMARY] == 4 * marked);
-    CHECK(result.phases[1].cost.cycles == supersampling_cost(fine.cost(), mask, c));
+    CHECK(result.phases[1].cost().cycles == supersampling_cost(fine.cost(), mask, c));
 }
 
 }  // namespace

@@ -12,11 +12,12 @@ TEST_CASE("each PE's load is the sum of its pixels' costs, in every phase", "[ri
     CAPTURE(scene, pes, offset);
     RingCase c{.width = 40, .height = 24, .pes = pes, .offset = offset, .lanes = 4};
     c.antialias.method = AntialiasMethod::kSupersample;
+    c.keep_costs = true;
     const RingResult result = render_scene(project_scene(scene), c);
     REQUIRE(result.phases.size() == 2);
     for (const Phase& phase : result.phases) {
         CAPTURE(phase.name);
-        CHECK(phase.load.per_pe == static_load(phase.cost, settings_of(c).mapping).per_pe);
+        CHECK(phase.load.per_pe == static_load(phase.cost(), settings_of(c).mapping).per_pe);
         CHECK(phase.load.max > 0);
     }
     CHECK(result.all.load.per_pe == static_load(result.cost(), settings_of(c).mapping).per_pe);
