@@ -144,14 +144,15 @@ StudyPage study_cluster(Laboratory& lab, const Scenes& given) {
     const Members members =
         each(given.empty() ? family() : given, [&](const LabelledScene& scene) { return member_of(lab, scene, size); });
     const bool beside = given.empty() && size == 256;
-    StudyPage page = page_about("cluster", {{"scenes", members.size()},
-                                            {"size", size},
-                                            {"pes", size},
-                                            {"seeds", fmt::format("1..{}", kMostViews)},
-                                            {"factor", machine_factor().value}});
+    const std::string seeds = fmt::format("1..{}", kMostViews);
+    Json settings = {{"scenes", members.size()}, {"size", size}, {"pes", size}, {"factor", machine_factor().value}};
+    if (given.empty()) settings["seeds"] = seeds;
+    StudyPage page = page_about("cluster", settings, {{"seeds", seeds}});
     page.clock = clock_text();
-    for (const auto& figure : kSought) page.comparisons.push_back(comparison_of(members, figure, beside, "sought"));
-    for (const auto& figure : kFree) page.comparisons.push_back(comparison_of(members, figure, beside, "free"));
+    for (const auto& figure : kSought)
+        page.comparisons.push_back(comparison_of(members, figure, beside, given.empty() ? "sought" : "as it is"));
+    for (const auto& figure : kFree)
+        page.comparisons.push_back(comparison_of(members, figure, beside, given.empty() ? "free" : "as it is"));
     if (beside)
         for (const auto& figure : kFree) page.claims.push_back(claim_of(members, figure));
     page.findings = {finding("cluster", "free", "scenes"_a = members.size(),

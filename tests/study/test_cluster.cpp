@@ -28,6 +28,7 @@ TEST_CASE("a cluster's times are plain sums on the one clock", "[study]") {
     const StudyPage page = study_cluster(lab, scenes);
     check_page(page);
     CHECK(page.claims.empty());
+    CHECK(page.settings.find("seeds") == nullptr);  // the family's, which is not here
     for (const Comparison& comparison : page.comparisons) CHECK_FALSE(comparison.paper);
     REQUIRE(page.table("cluster").rows.size() == 5);
     const double ms = 100e-6 * 7 / (256 * 42 * 100e-6);  // of a budget cycle: the filter's 7 ms over its 256 x 42
