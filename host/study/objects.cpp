@@ -1,5 +1,6 @@
 // Fig. 4: 64 transputers, 64 to 8320 objects. Is random slower than even, is it for the copies, and why does time grow
 // less than the objects do?
+#include "host/study/ensemble.hpp"
 #include "host/study/objects_findings.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
@@ -13,17 +14,7 @@ using Row = ObjectsRow;
 using Ratio = ObjectsRatio;
 using Ratios = ObjectsRatios;
 
-constexpr const char *kPaperProtocol = kProtocolOfPaper.name, *kOwnProtocol = kProtocolOfRaya.name;
-
 Cell half_width(const Estimate& e) { return e.has_interval() ? Cell(e.half_width) : Cell("-"); }
-
-template <class Some, class Y>
-PlotSeries line_with_bars(std::string label, const Some& rows, Y estimate) {
-    PlotSeries series = line(std::move(label), rows, &RowOf<Some>::objects,
-                             [&](const auto& row) { return std::invoke(estimate, row).mean; });
-    for (const auto& row : rows) series.half_widths.push_back(std::invoke(estimate, row).half_width);
-    return series;
-}
 
 Column<Row> mean(const char* label, auto figure, const char* unit = "") {
     return {label, [=](const Row& row) { return row.of(figure).mean; }, unit};
@@ -97,7 +88,7 @@ StudyPlot time_plot(const Rows& rows, const char* protocol, const char* name, co
                     Estimate (Row::*time)() const) {
     StudyPlot plot{name, title, "objects", "modelled ms", Axes::kLogBoth};
     for (const char* kind : {kEven, kRandom, kWithin})
-        plot.series.push_back(line_with_bars(kind, of(rows, kind, protocol), time));
+        plot.series.push_back(line_with_bars(kind, of(rows, kind, protocol), &Row::objects, time));
     const Rows even = of(rows, kEven, protocol);
     const double first = (even.front().*time)().mean;
     plot.series.push_back(line("as the objects, from the even scene's first", even, &Row::objects,
@@ -110,12 +101,12 @@ std::vector<StudyPlot> plots_of(const ObjectsRuns& all, const Ratios& ratios) {
     for (const char* protocol : {kPaperProtocol, kOwnProtocol})
         for (const char* kind : {kRandom, kWithin})
             ratio.series.push_back(line_with_bars(fmt::format("{}, protocol: {}", kind, protocol),
-                                                  of(ratios, kind, protocol), &Ratio::overlapped));
+                                                  of(ratios, kind, protocol), &Ratio::objects, &Ratio::overlapped));
     StudyPlot depth{"objects-depth", "How deep primary rays go", "objects", "voxels a ray in the box", Axes::kLogX};
     for (const std::string kind : {kEven, kRandom})
         depth.series.push_back(
             line_with_bars(kind, where(all.primary, [&](const PrimaryRow& row) { return row.kind == kind; }),
-                           [](const PrimaryRow& row) { return estimate_of(row.voxels); }));
+                           &PrimaryRow::objects, [](const PrimaryRow& row) { return estimate_of(row.voxels); }));
     return {time_plot(all.rows, kPaperProtocol, "objects-async",
                       "Time by the protocol of Yoshitani & Yamazaki, without supersteps", &Row::asynchronous),
             time_plot(all.rows, kPaperProtocol, "objects", "Time by the protocol of Yoshitani & Yamazaki, overlapped",

@@ -1,5 +1,7 @@
 #include "host/study/objects_findings.hpp"
 
+#include "host/study/ensemble.hpp"
+
 namespace raya {
 namespace {
 
@@ -11,31 +13,27 @@ using Ratios = ObjectsRatios;
 constexpr double kNoticed = 1.02;  // times as long: slower
 constexpr double kLinear = 1.1;    // objects over time, within which time grows as the objects do
 
-constexpr const char *kPaperProtocol = kProtocolOfPaper.name, *kOwnProtocol = kProtocolOfRaya.name;
-
-std::string with_interval(const Estimate& e) {
-    return e.has_interval() ? fmt::format("{:.2f} +- {:.2f}", e.mean, e.half_width) : fmt::format("{:.2f}", e.mean);
-}
+std::string in_short(const Estimate& estimate) { return with_interval(estimate, 2); }
 
 std::string text_of(const Ratios& some, Estimate Ratio::*time) {
     return joined(some, ", ",
-                  [&](const Ratio& one) { return fmt::format("{} ({})", with_interval(one.*time), one.objects); });
+                  [&](const Ratio& one) { return fmt::format("{} ({})", in_short(one.*time), one.objects); });
 }
 
-// Slower where the whole interval lies above 1; not slower where it lies below what is noticed.
+// Slower where the whole interval lies above 1; else not slower where it lies below what is noticed.
 std::size_t slower(const Ratios& some, Estimate Ratio::*time) {
     return static_cast<std::size_t>(
         std::ranges::count_if(some, [&](const Ratio& one) { return (one.*time).low() > 1; }));
 }
 std::size_t not_slower(const Ratios& some, Estimate Ratio::*time) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(some, [&](const Ratio& one) { return (one.*time).high() < kNoticed; }));
+    return static_cast<std::size_t>(std::ranges::count_if(
+        some, [&](const Ratio& one) { return (one.*time).low() <= 1 && (one.*time).high() < kNoticed; }));
 }
 
-// Reproduced where all numbers of objects are slower, not reproduced where half of them or more are not.
-ClaimVerdict verdict_of(const Ratios& some, Estimate Ratio::*time) {
-    if (slower(some, time) == some.size()) return ClaimVerdict::kReproduced;
-    return 2 * not_slower(some, time) >= some.size() ? ClaimVerdict::kNotReproduced : ClaimVerdict::kCannotTell;
+// Reproduced where all numbers of objects are slower; not reproduced where none is, and half of them or more are not.
+ClaimVerdict verdict_on(const Ratios& some, Estimate Ratio::*time) {
+    const std::size_t are = slower(some, time);
+    return verdict_of(are == some.size(), are == 0 && 2 * not_slower(some, time) >= some.size());
 }
 
 // By the machine without supersteps, as theirs is; its bounds stand beside it.
@@ -44,35 +42,39 @@ Claim claim_of_random(const Ratios& ratios) {
     return {
         paper::kTp, "Fig. 4",
         "Random objects take longer than even ones, as those that straddle voxels are registered more than once.",
-        verdict_of(some, &Ratio::asynchronous),
+        verdict_on(some, &Ratio::asynchronous),
         fmt::format("Random over even, without supersteps: {}. Slower, by the 95 % interval, for {} of {} numbers of "
-                    "objects; told apart by less than 2 % for {}. Its bounds: overlapped {}; stepwise {}.",
+                    "objects; not slower, or by less than 2 %, for {}. Its bounds: overlapped {}; stepwise {}.",
                     text_of(some, &Ratio::asynchronous), slower(some, &Ratio::asynchronous), some.size(),
                     not_slower(some, &Ratio::asynchronous), text_of(some, &Ratio::overlapped),
                     text_of(some, &Ratio::stepwise))};
 }
 
+// Of both kinds; linear where one of them is.
 Claim claim_of_growth(const GrowthRow& even, const GrowthRow& random) {
-    const double least = std::min(even.of(&Growth::sublinearity).low(), random.of(&Growth::sublinearity).low());
-    return {
-        paper::kTp, "Fig. 4", "Time does not grow linearly with the objects.",
-        least > kLinear ? ClaimVerdict::kReproduced : ClaimVerdict::kNotReproduced,
-        fmt::format("{:.0f} times the objects take {:.2f} times the time, even; {} times, random.",
-                    even.mean(&Growth::objects), even.mean(&Growth::time), with_interval(random.of(&Growth::time)))};
+    const Estimate of_even = even.of(&Growth::sublinearity), of_random = random.of(&Growth::sublinearity);
+    return {paper::kTp, "Fig. 4", "Time does not grow linearly with the objects.",
+            verdict_of(std::min(of_even.low(), of_random.low()) > kLinear,
+                       std::min(of_even.high(), of_random.high()) <= kLinear),
+            fmt::format("{:.0f} times the objects take {:.2f} times the time, even; {} times, random.",
+                        even.mean(&Growth::objects), even.mean(&Growth::time), in_short(random.of(&Growth::time)))};
 }
 
 double share_of_depth(const Growth& growth) { return growth.share(growth.depth); }
 
-// The paper's reason is the right one where it explains more than half, of logarithms, in both kinds.
+// The paper's reason is the right one where it explains more than half, of logarithms, in both kinds; it is not where
+// it explains half or less in one.
 Claim claim_of_depth(const GrowthRow& even, const GrowthRow& random) {
-    const double shares[] = {even.of(share_of_depth).mean, random.of(share_of_depth).mean};
+    constexpr double kHalf = 0.5;
+    const Estimate of_even = even.of(share_of_depth), of_random = random.of(share_of_depth);
     return {
         paper::kTp, "Fig. 4", "That is since the share of rays that end in the front voxels differs.",
-        std::ranges::min(shares) > 0.5 ? ClaimVerdict::kReproduced : ClaimVerdict::kNotReproduced,
+        verdict_of(std::min(of_even.low(), of_random.low()) > kHalf,
+                   std::min(of_even.high(), of_random.high()) <= kHalf),
         fmt::format("Rays end earlier: fewer voxels a ray explain a factor of {:.2f} of {:.2f} even, {:.2f} of {:.2f} "
                     "random; that is {:.0f} % and {:.0f} % of it by logarithms.",
                     even.mean(&Growth::depth), even.of(&Growth::sublinearity).mean, random.mean(&Growth::depth),
-                    random.of(&Growth::sublinearity).mean, 100 * shares[0], 100 * shares[1])};
+                    random.of(&Growth::sublinearity).mean, 100 * of_even.mean, 100 * of_random.mean)};
 }
 
 std::string finding_of_random(const Ratios& ratios, const std::string& protocol) {
@@ -99,8 +101,8 @@ std::string finding_of_growth(const GrowthRow& row) {
         "Protocol of {}, {}: {:.0f} times the objects take {} times the time, {} times less than in proportion. As a "
         "product: {:.2f} as rays go through fewer voxels, {:.2f} as a voxel's tests grow less than the objects, {:.2f} "
         "for what does not depend on objects, {:.2f} for what one node or link holds up.",
-        row.protocol, row.kind, row.mean(&Growth::objects), with_interval(row.of(&Growth::time)),
-        with_interval(row.of(&Growth::sublinearity)), row.mean(&Growth::depth), row.mean(&Growth::lists),
+        row.protocol, row.kind, row.mean(&Growth::objects), in_short(row.of(&Growth::time)),
+        in_short(row.of(&Growth::sublinearity)), row.mean(&Growth::depth), row.mean(&Growth::lists),
         row.mean(&Growth::fixed), row.mean(&Growth::bound));
 }
 

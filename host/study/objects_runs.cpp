@@ -111,7 +111,7 @@ ObjectsRows of(const ObjectsRows& rows, const std::string& kind, const std::stri
 
 ObjectsRatios ratios_of(const ObjectsRows& rows) {
     ObjectsRatios all;
-    for (const std::string protocol : {kProtocolOfPaper.name, kProtocolOfRaya.name})
+    for (const std::string protocol : {kPaperProtocol, kOwnProtocol})
         for (const std::string kind : {kRandom, kWithin}) {
             const ObjectsRows even = of(rows, kEven, protocol), some = of(rows, kind, protocol);
             for (std::size_t i = 0; i < some.size(); ++i) {
@@ -133,7 +133,7 @@ ObjectsRatios of(const ObjectsRatios& all, const std::string& kind, const std::s
 
 std::vector<GrowthRow> growth_rows(const ObjectsRows& rows) {
     std::vector<GrowthRow> all;
-    for (const std::string protocol : {kProtocolOfPaper.name, kProtocolOfRaya.name})
+    for (const std::string protocol : {kPaperProtocol, kOwnProtocol})
         for (const std::string kind : {kEven, kRandom}) {
             const ObjectsRows some = of(rows, kind, protocol);
             all.push_back({kind, protocol, growth_of(some.front(), some.back())});

@@ -11,6 +11,7 @@
 namespace raya {
 
 inline constexpr const char *kEven = "even", *kRandom = "random", *kWithin = "random, none astride";
+inline constexpr const char *kPaperProtocol = kProtocolOfPaper.name, *kOwnProtocol = kProtocolOfRaya.name;
 
 /// One number of objects of one kind by one protocol: a render of the even scene, or one of each random scene.
 struct ObjectsRow {
