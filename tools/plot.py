@@ -5,8 +5,8 @@
 
 `raya study` holds this script within itself and does the same after each study. The same file gives the same bytes
 under the same matplotlib. An SVG says in words what it shows and holds the figures of its points, for the document of
-all studies (host/study/html_figure.hpp, host/study/document/script.js). All plots of a file appear, each whole, or none does. Exit code 1: a file cannot be drawn,
-with the reason; 3: no matplotlib.
+all studies (host/study/html_figure.hpp, host/study/document/script.js). All plots of a file appear, each whole, or none
+does. Exit code 1: a file cannot be drawn, with the reason; 3: no matplotlib.
 """
 import sys
 
@@ -136,7 +136,8 @@ def ink_of(axes, plot, drawn):
     """Places that lines and points cover, in points of an inch on the figure."""
     places = []
     for x, y in drawn:
-        at = axes.transData.transform([at for at in zip(x, y) if is_shown(plot, *at)] or [(1, 1)]) * 72 / axes.figure.dpi
+        shown = [at for at in zip(x, y) if is_shown(plot, *at)] or [(1, 1)]
+        at = axes.transData.transform(shown) * 72 / axes.figure.dpi
         places += [tuple(a + (b - a) * i / 16) for a, b in zip(at, at[1:]) for i in range(16)] + [tuple(at[-1])]
     return places
 
@@ -281,7 +282,8 @@ def described(svg, figure, plot):
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
     svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", svg)
     svg = svg.replace("*{stroke", f"#{name} *{{stroke")  # a style for all elements is for those of the drawing
-    svg = svg.replace("<svg ", f'<svg id="{name}" role="img" aria-labelledby="{name}-title" aria-describedby="{name}-desc" ', 1)
+    svg = svg.replace("<svg ", f'<svg id="{name}" role="img" aria-labelledby="{name}-title" '
+                      f'aria-describedby="{name}-desc" ', 1)
     head = svg.index(">", svg.index("<svg ")) + 1
     words = (f'\n<title id="{name}-title">{escape(plot["title"])}</title>'
              f'\n<desc id="{name}-desc">{escape(plot.get("description", ""))}</desc>')
