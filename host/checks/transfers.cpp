@@ -66,6 +66,34 @@ Verdict check_bus(Session& session) {
     return passed(fmt::format("{} words each way", words.size()));
 }
 
+// Every PE's block has words of its own in each round, and comes from the middle of its memory.
+Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
+    Communication counted;
+    Bus bus(session, counted);
+    const std::size_t pitch = words + 3, offset = 2;
+    auto memory = session.buffer<float>("own words", pes * pitch),
+         blocks = session.buffer<float>("blocks", pes * words);
+    for (std::uint32_t round = 0; round < 6; ++round) {
+        const bool to_all = round == 5;  // a block in its own PE's place is what all have heard
+        const std::size_t distance = to_all ? 0 : 1 + round * (pes - 1) / 5;
+        const Words own = numbered(pes * pitch, round * static_cast<std::uint32_t>(pes * pitch));
+        session.write("own words", memory, as_floats(own));
+        for (std::size_t pe = 0; pe < pes; ++pe) {
+            const PeWords from{(pe + distance) % pes, pitch, offset}, to{pe, words, 0};
+            to_all ? bus.broadcast_from(memory, from, blocks, to, words) : bus.send(memory, from, blocks, to, words);
+        }
+        Words expected;
+        for (std::size_t w = 0; w < pes * words; ++w)
+            expected.push_back(own[(w / words + distance) % pes * pitch + offset + w % words]);
+        std::vector<float> got(expected.size());
+        session.read("blocks", blocks, got);
+        const std::string what = to_all ? "broadcast" : fmt::format("distance {}", distance);
+        if (auto verdict = difference(expected, as_words(got), what, words, "PE")) return *verdict;
+    }
+    return passed(
+        fmt::format("{} transfers and {} broadcasts of {} words", counted.transfers, counted.pe_broadcasts, words));
+}
+
 // Blocks of all PEs after a turn: PE i has what PE (i + turned) mod P had. Every turn has words of its own: with two
 // PEs, those of the turn before the last would be where these belong.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {

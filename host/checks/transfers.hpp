@@ -13,6 +13,9 @@ namespace raya {
 /// Words that are broadcast, and others that are gathered.
 Verdict check_bus(Session& session);
 
+/// Blocks of so many words from every PE to another one, at five distances, and from each PE to all.
+Verdict check_transfers(Session& session, std::size_t pes, std::size_t words);
+
 /// 12 rotations, in both directions, of P blocks of so many words.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
 

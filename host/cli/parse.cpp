@@ -58,6 +58,12 @@ AntialiasMethod parse_antialias(const std::string& text) {
     throw UserError(fmt::format("--antialias {}: must be none, filter or supersample", text));
 }
 
+ExchangeWay parse_exchange(const std::string& text) {
+    for (const ExchangeWay way : {ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast})
+        if (text == exchange_name(way)) return way;
+    throw UserError(fmt::format("--exchange {}: must be ring, bus or bus-broadcast", text));
+}
+
 raya_u32 parse_points(const std::string& text) {
     for (const raya_u32 points : {RAYA_POINTS_AXES, RAYA_POINTS_DIAGONALS})
         if (text == points_name(points)) return points;

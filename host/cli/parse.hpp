@@ -35,6 +35,8 @@ Accel parse_accel(const std::string& text);
 
 /// --antialias: "none", "filter", "supersample".
 AntialiasMethod parse_antialias(const std::string& text);
+/// --exchange: "ring", "bus", "bus-broadcast".
+ExchangeWay parse_exchange(const std::string& text);
 /// --points: "axes", "diagonals".
 raya_u32 parse_points(const std::string& text);
 /// --sampling: "centres", "corners".

@@ -53,9 +53,14 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->capture_default_str();
     add_value(command, "--antialias", o.antialias,
               "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
-              "differ from a neighbour; neighbours come by rotating the ring")
+              "differ from a neighbour; neighbours come by --exchange")
         ->type_name("none|filter|supersample")
         ->capture_default_str();
+    add_value(command, "--exchange", o.exchange,
+              "How neighbours come to each PE: ring: all blocks move to the next PE at once; bus: from PE to PE, one "
+              "transfer after another; bus-broadcast: each PE in turn to all. The image is the same")
+        ->type_name("ring|bus|bus-broadcast")
+        ->default_str("ring");
     add_value(command, "--threshold", o.threshold,
               "Supersample where a colour, clamped to 0..1, differs by this much or more, 0..1; default: 0.125")
         ->type_name("T");
@@ -93,6 +98,9 @@ Antialias antialias_settings(const RenderOptions& o) {
     antialias.points = parse_points(o.points.empty() ? "axes" : o.points);
     if (antialias.method != AntialiasMethod::kSupersample && (o.threshold || !o.points.empty()))
         throw UserError("--threshold and --points say how to supersample: give --antialias supersample as well");
+    if (antialias.method == AntialiasMethod::kNone && !o.exchange.empty())
+        throw UserError("--exchange says how neighbours' pixels come: give --antialias as well");
+    antialias.exchange = parse_exchange(o.exchange.empty() ? "ring" : o.exchange);
     antialias.threshold = o.threshold.value_or(antialias.threshold) + 0.0;  // -0 is 0
     if (!(antialias.threshold >= 0 && antialias.threshold <= 1))
         throw UserError(fmt::format("--threshold {}: must be 0..1", antialias.threshold));

@@ -17,7 +17,7 @@ namespace raya {
 /// As given on the command line; what is empty follows the machine, the scene or the device.
 struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
-                       points, kernel_dir, accel;
+                       points, exchange, kernel_dir, accel;
     bool strict = false;
     std::optional<double> threshold;
     std::optional<std::uint64_t> pe_memory;  // bytes

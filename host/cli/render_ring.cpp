@@ -18,6 +18,7 @@ std::optional<Antialiasing> antialiasing(const RingSettings& settings, const Rin
     if (a.method == AntialiasMethod::kNone) return {};
     Antialiasing report;
     report.method = antialias_name(a.method);
+    report.exchange = exchange_name(a.exchange);
     report.band_pixels = result.pe_memory.band_pixels;
     if (a.method == AntialiasMethod::kFilter) return report;
     report.points = points_name(a.points);

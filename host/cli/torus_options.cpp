@@ -79,12 +79,13 @@ constexpr const char* kNoPixels =
 constexpr const char* kNoNeighbours =
     "no node holds pixels that it could compare with their neighbours; leave it out, or choose a ring: --machine "
     "grande";
-constexpr std::array<Foreign, 10> kOfRings = {
+constexpr std::array<Foreign, 11> kOfRings = {
     {{"--mapping", kNoPixels},
      {"--offset", kNoPixels},
      {"--fold", kNoPixels},
      {"--pes", "its PEs are nodes; say how many with --nodes IxJxK"},
      {"--antialias", kNoNeighbours},
+     {"--exchange", kNoNeighbours},
      {"--threshold", kNoNeighbours},
      {"--points", kNoNeighbours},
      {"--mask", kNoNeighbours},

@@ -12,7 +12,8 @@
 namespace raya {
 namespace {
 
-// Kohata & Ito 1993. Marks: [P] printed there, [D] arithmetic on what is printed, [?] ours.
+// Kohata & Ito 1993. Marks: [P] printed there, [D] arithmetic on what is printed, [?] ours. No time of a transfer from
+// PE to PE over the bus is printed: [?] it has a link's rate and a rotation's synchronisation.
 Machine spa() {
     return {
         .name = "spa",

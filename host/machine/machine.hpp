@@ -39,8 +39,8 @@ struct Machine {
 
     // Rates of the time model (machine/time_model.hpp); empty where they are not known.
     std::optional<double> cycle_ns;          // of a PE, one multiply-accumulate
-    std::optional<double> link_words_per_s;  // of one PE to its neighbour
-    std::optional<double> rotation_sync_ms;  // what a rotation takes beside its words
+    std::optional<double> link_words_per_s;  // of one PE to its neighbour, and over the bus to any
+    std::optional<double> rotation_sync_ms;  // what a rotation, or a PE's turn on the bus, takes beside its words
     std::optional<double> host_words_per_s;  // broadcast and gather
 };
 

@@ -24,10 +24,13 @@ std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<cons
     time.compute_ms = milliseconds(cycles, *machine.cycle_ns, factor);
     time.filter_ms = milliseconds(smoothing.filter, *machine.cycle_ns, factor);
     time.compare_ms = milliseconds(smoothing.compare, *machine.cycle_ns, factor);
-    // All PEs send at once, each its P-th part of the words.
+    // On the ring all PEs send at once, each its P-th part of the words; the bus carries one transfer after another.
     const auto pes = static_cast<double>(phases.front().per_pe.size());
-    time.communication_ms = static_cast<double>(communication.rotations) * *machine.rotation_sync_ms +
-                            milliseconds(communication.rotation_words, *machine.link_words_per_s) / pes;
+    const std::uint64_t moves = communication.rotations + communication.transfers + communication.pe_broadcasts;
+    time.communication_ms =
+        static_cast<double>(moves) * *machine.rotation_sync_ms +
+        milliseconds(communication.rotation_words, *machine.link_words_per_s) / pes +
+        milliseconds(communication.transfer_words + communication.pe_broadcast_words, *machine.link_words_per_s);
     time.image_ms = milliseconds(communication.gather_words, *machine.host_words_per_s);
     time.total_ms = time.objects_ms + time.compute_ms + time.communication_ms + time.image_ms;
     return time;

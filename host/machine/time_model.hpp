@@ -22,7 +22,7 @@ struct ModelledTime {
     double compute_ms = 0;        // all that the PEs compute: tracing, filter_ms and compare_ms
     double filter_ms = 0;         // of compute_ms: means of neighbouring pixels
     double compare_ms = 0;        // of compute_ms: comparisons with neighbouring pixels
-    double communication_ms = 0;  // rotations of the ring
+    double communication_ms = 0;  // rotations of the ring; transfers and broadcasts of PEs on the bus
     double image_ms = 0;          // the image to the host
     double total_ms = 0;          // objects, compute, communication, image
     double factor = 1;            // that compute_ms was multiplied by
@@ -51,7 +51,8 @@ struct TorusTime {
 };
 
 /// Empty where the machine's rates are not known. The phases' loads, one at least, are those of all PEs; the machine
-/// waits for the busiest PE of each phase. `factor` > 0 is for cycles that the budget does not see; who fits it has to
+/// waits for the busiest PE of each phase. The bus carries one PE's words at a time, at the links' rate and with a
+/// rotation's synchronisation (Machine). `factor` > 0 is for cycles that the budget does not see; who fits it has to
 /// report it.
 std::optional<ModelledTime> modelled_time(const Machine& machine, std::span<const Load> phases,
                                           const Communication& communication, double factor = 1,

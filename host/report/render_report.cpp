@@ -38,7 +38,7 @@ Json loads_json(const RenderReport& r) {
 
 Json antialias_json(const std::optional<Antialiasing>& a) {
     if (!a) return {{"method", "none"}};
-    Json json = {{"method", a->method}, {"band_pixels", a->band_pixels}};
+    Json json = {{"method", a->method}, {"exchange", a->exchange}, {"band_pixels", a->band_pixels}};
     if (a->points.empty()) return json;
     json["threshold"] = a->threshold;
     json["points"] = a->points;
@@ -48,9 +48,16 @@ Json antialias_json(const std::optional<Antialiasing>& a) {
 }
 
 Json communication_json(const Communication& c) {
-    return {{"broadcasts", c.broadcasts}, {"broadcast_words", c.broadcast_words},
-            {"rotations", c.rotations},   {"rotation_words", c.rotation_words},
-            {"gathers", c.gathers},       {"gather_words", c.gather_words}};
+    return {{"broadcasts", c.broadcasts},
+            {"broadcast_words", c.broadcast_words},
+            {"rotations", c.rotations},
+            {"rotation_words", c.rotation_words},
+            {"transfers", c.transfers},
+            {"transfer_words", c.transfer_words},
+            {"pe_broadcasts", c.pe_broadcasts},
+            {"pe_broadcast_words", c.pe_broadcast_words},
+            {"gathers", c.gathers},
+            {"gather_words", c.gather_words}};
 }
 
 Json accel_json(const std::optional<AccelSummary>& a) {
@@ -182,8 +189,12 @@ std::string antialias_lines(const RenderReport& r) {
                             a.recomputed, 100 * a.recomputed_share, a.threshold);
     if (r.loads.size() > 1)
         for (const auto& [phase, load] : r.loads) text += load_line("  " + phase.substr(0, 5), load);
-    return text +
-           fmt::format("ring    {} rotations, {} words\n", r.communication.rotations, r.communication.rotation_words);
+    const Communication& c = r.communication;
+    if (a.exchange == "bus")
+        return text + fmt::format("bus     {} transfers between PEs, {} words\n", c.transfers, c.transfer_words);
+    if (a.exchange == "bus-broadcast")
+        return text + fmt::format("bus     {} broadcasts by PEs, {} words\n", c.pe_broadcasts, c.pe_broadcast_words);
+    return text + fmt::format("ring    {} rotations, {} words\n", c.rotations, c.rotation_words);
 }
 
 std::string model_line(const RenderReport& r) {

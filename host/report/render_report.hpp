@@ -19,14 +19,15 @@
 
 namespace raya {
 
-/// How the image was smoothed over the ring.
+/// How the image was smoothed over ring or bus.
 struct Antialiasing {
     std::string method;             // "filter" or "supersample"
+    std::string exchange;           // how neighbours' pixels came: "ring", "bus", "bus-broadcast"
     std::string points;             // of supersampling: "axes" or "diagonals"
     double threshold = 0;           // of supersampling, 0..1
     std::uint64_t recomputed = 0;   // pixels supersampled
     double recomputed_share = 0;    // of all pixels
-    std::uint32_t band_pixels = 0;  // pixels of a PE that go round the ring at a time
+    std::uint32_t band_pixels = 0;  // pixels of a PE that move at a time
 };
 
 /// The build of one program, on the host.

@@ -31,6 +31,11 @@ void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool d
         antialias_name(method), mapping_text(mapping)));
 }
 
+MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping) {
+    if (antialias.method == AntialiasMethod::kNone) return {};
+    return exchange_moves(mapping, antialias.exchange, antialias.method == AntialiasMethod::kSupersample);
+}
+
 SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share) {
     SmoothingCycles cycles;
     if (method == AntialiasMethod::kFilter) cycles.filter = filter_cycles(share);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "host/machine/time_model.hpp"
+#include "host/ring/exchange_plan.hpp"
 #include "kernels/shared/neighbours.h"
 
 namespace raya {
@@ -15,8 +16,9 @@ enum class AntialiasMethod {
 
 struct Antialias {
     AntialiasMethod method = AntialiasMethod::kNone;
-    double threshold = 0.125;            // of the difference in a colour, 0..1; supersampling
-    raya_u32 points = RAYA_POINTS_AXES;  // RAYA_POINTS_AXES or _DIAGONALS; supersampling
+    double threshold = 0.125;                   // of the difference in a colour, 0..1; supersampling
+    raya_u32 points = RAYA_POINTS_AXES;         // RAYA_POINTS_AXES or _DIAGONALS; supersampling
+    ExchangeWay exchange = ExchangeWay::kRing;  // how neighbours' pixels come
 };
 
 /// "none", "filter", "supersample"
@@ -27,6 +29,10 @@ void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool d
 
 /// "axes", "diagonals", of RAYA_POINTS_*
 std::string points_name(raya_u32 points);
+
+/// Moves of ring or bus that bring neighbours' pixels from each side, where whole shares move. The filter's sums have
+/// an order, comparisons have none.
+MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping);
 
 /// Cycles that a PE whose share has `share` pixels spends on the method's arithmetic between neighbours.
 SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t share);

@@ -1,4 +1,5 @@
-// The bus: host to all PEs (broadcast) and all PEs to the host (gather), as counted, labelled buffer transfers.
+// The bus, as counted, labelled buffer transfers: host to all PEs (broadcast), all PEs to the host (gather), one PE to
+// one other, and one PE to all (Kohata & Ito 1993, section on the array). It carries one transfer at a time.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -7,6 +8,13 @@
 #include "host/machine/communication.hpp"
 
 namespace raya {
+
+/// Where words of one PE lie in a buffer that holds `pitch` words of each: from word `offset` of its own on.
+struct PeWords {
+    std::size_t pe = 0, pitch = 0, offset = 0;
+
+    std::size_t at() const { return pe * pitch + offset; }
+};
 
 class Bus {
   public:
@@ -17,6 +25,21 @@ class Bus {
         session_.write("bus.broadcast", to, words);
         counted_.broadcasts += 1;
         counted_.broadcast_words += words.size();
+    }
+
+    /// `words` of one PE to another, between buffers that are not the same.
+    void send(const Buffer<float>& own, PeWords from, Buffer<float>& blocks, PeWords to, std::size_t words) {
+        session_.copy("bus.send", own, from.at(), blocks, to.at(), words);
+        counted_.transfers += 1;
+        counted_.transfer_words += words;
+    }
+
+    /// `words` of one PE to every other. `heard` is what all PEs listen to: it lies on the device once, the words of
+    /// each PE that spoke in its place.
+    void broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& heard, PeWords to, std::size_t words) {
+        session_.copy("bus.broadcast_from", own, from.at(), heard, to.at(), words);
+        counted_.pe_broadcasts += 1;
+        counted_.pe_broadcast_words += words;
     }
 
     /// All PEs hand over what their memories hold: one gather of the machine, in one part or more.

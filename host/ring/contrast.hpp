@@ -1,4 +1,4 @@
-// Marks the pixels that differ from a neighbour, over the ring (kernels/ring/contrast.cl).
+// Marks the pixels that differ from a neighbour, over ring or bus (kernels/ring/contrast.cl).
 #pragma once
 #include "host/kernels/kernels.hpp"
 #include "host/ring/exchange_setup.hpp"
@@ -24,8 +24,8 @@ class RingContrast {
     const Buffer<std::uint8_t>& marks() const { return marks_; }
 
   private:
-    void mark_contrasts(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
-                        std::uint32_t capacity, const Buffer<float>& pixels);
+    void mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity,
+                        const Buffer<float>& pixels);
 
     ExchangeSetup setup_;
     float threshold_;

@@ -10,7 +10,7 @@ RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
       take_means_(kernels.get<TakeMeansKernel>()),
       sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes * setup.capacity)) {
     Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
-    add_neighbours("warm-up", RAYA_LEFT, {none, 0, 0}, 0, 0);
+    add_neighbours("warm-up", {none, RAYA_LEFT, 0, 0}, 0, 0);
     setup.session.launch("warm-up", take_means_, setup.pes, setup.group_size, setup.broadcast, Uint<"capacity">{0},
                          sums_);
 }
@@ -23,22 +23,23 @@ void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
                           Uint<"capacity">{setup_.capacity}, pixels);
 }
 
-// pixels = (pixels + those on the first side) + those on the second side
+// pixels = (pixels + those on the first side) + those on the second side: an order, so one side is brought after the
+// other.
 void RingFilter::sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
                           raya_u32 first_side, raya_u32 second_side) {
     setup_.session.copy("filter.begin_sums", pixels, 0, sums_, 0, pixels.size());
     for (const raya_u32 side : {first_side, second_side})
-        exchange.visit(pixels, side, [&](const Arrival& arrival) {
-            add_neighbours(label, side, arrival, exchange.band(), setup_.capacity);
+        exchange.visit(pixels, {side}, [&](const Arrival& arrival) {
+            add_neighbours(label, arrival, exchange.band(), setup_.capacity);
         });
     std::swap(pixels, sums_);
 }
 
-void RingFilter::add_neighbours(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
+void RingFilter::add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band,
                                 std::uint32_t capacity) {
-    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast, Uint<"side">{side},
-                          Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin}, Uint<"band">{band},
-                          Uint<"capacity">{capacity}, arrival.blocks, sums_);
+    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast,
+                          Uint<"side">{arrival.side}, Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin},
+                          Uint<"band">{band}, Uint<"capacity">{capacity}, arrival.blocks, sums_);
 }
 
 }  // namespace raya

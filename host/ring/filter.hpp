@@ -1,4 +1,4 @@
-// The 3 x 3 filter over the ring (kernels/ring/filter.cl).
+// The 3 x 3 filter over ring or bus (kernels/ring/filter.cl).
 #pragma once
 #include "host/kernels/kernels.hpp"
 #include "host/ring/exchange_setup.hpp"
@@ -25,8 +25,7 @@ class RingFilter {
   private:
     void sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label, raya_u32 first_side,
                   raya_u32 second_side);
-    void add_neighbours(const std::string& label, raya_u32 side, const Arrival& arrival, std::uint32_t band,
-                        std::uint32_t capacity);
+    void add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity);
 
     ExchangeSetup setup_;
     AddNeighboursKernel add_neighbours_;

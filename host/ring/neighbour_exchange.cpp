@@ -1,5 +1,7 @@
 #include "host/ring/neighbour_exchange.hpp"
 
+#include <algorithm>
+
 namespace raya {
 namespace {
 
@@ -8,33 +10,74 @@ constexpr std::size_t kPixelWords = 3;
 }  // namespace
 
 NeighbourExchange::NeighbourExchange(Session& session, Communication& counted, const raya_mapping& mapping,
-                                     std::uint32_t capacity, std::uint32_t band)
-    : pes_(mapping.pes), capacity_(capacity), band_(band), ring_(session, counted, mapping.pes, kPixelWords * band) {
-    for (raya_u32 side = 0; side < RAYA_SIDES; ++side)
-        routes_[side] = shortest_route(pes_, neighbour_distances(mapping, side));
+                                     std::uint32_t capacity, std::uint32_t band, ExchangeWay way)
+    : pes_(mapping.pes),
+      capacity_(capacity),
+      band_(band),
+      way_(way),
+      ring_(session, counted, mapping.pes, kPixelWords * band),
+      bus_(session, counted) {
+    for (raya_u32 side = 0; side < RAYA_SIDES; ++side) distances_[side] = neighbour_distances(mapping, side);
+    if (way == ExchangeWay::kBroadcast)
+        heard_ = session.buffer<float>("blocks that were broadcast", ring_.blocks().size());
 }
 
-void NeighbourExchange::visit(const Buffer<float>& own, raya_u32 side,
-                              const std::function<void(const Arrival&)>& arrived) {
-    for (std::uint32_t begin = 0; begin < capacity_; begin += band_)
-        for (const Leg& leg : routes_[side]) travel(own, leg, begin, arrived);
-}
-
-void NeighbourExchange::travel(const Buffer<float>& own, const Leg& leg, std::uint32_t begin,
-                               const std::function<void(const Arrival&)>& arrived) {
-    ring_.load(own, kPixelWords * capacity_, kPixelWords * begin);
-    std::uint32_t turns = 0;
-    for (const std::uint32_t stop : leg.stops) {
-        for (; turns < stop; ++turns) ring_.rotate(leg.turn);
-        arrived({ring_.blocks(), leg.turn == Turn::kDown ? stop : pes_ - stop, begin});
+void NeighbourExchange::visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides, const Arrived& arrived) {
+    for (std::uint32_t begin = 0; begin < capacity_; begin += band_) {
+        if (way_ == ExchangeWay::kBroadcast) hear(own, sides, begin, arrived);
+        for (const raya_u32 side : sides) {
+            if (way_ == ExchangeWay::kRing) turn(own, side, begin, arrived);
+            if (way_ == ExchangeWay::kBus) fetch(own, side, begin, arrived);
+        }
     }
 }
 
-std::uint64_t NeighbourExchange::rotations() const {
-    std::uint64_t turns = 0;
-    for (const std::vector<Leg>& route : routes_)
-        for (const Leg& leg : route) turns += leg.turns();
-    return turns * ((capacity_ + band_ - 1) / band_);
+// Round the ring, the shortest way past all PEs that have neighbours.
+void NeighbourExchange::turn(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived) {
+    for (const Leg& leg : shortest_route(pes_, distances_[side])) {
+        load(own, begin);
+        std::uint32_t turns = 0;
+        for (const std::uint32_t stop : leg.stops) {
+            for (; turns < stop; ++turns) ring_.rotate(leg.turn);
+            arrived({ring_.blocks(), side, leg.turn == Turn::kDown ? stop : pes_ - stop, begin});
+        }
+    }
+}
+
+// From PE to PE: to each in turn from the one that is so far away.
+void NeighbourExchange::fetch(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived) {
+    const std::size_t pitch = kPixelWords * capacity_, block = kPixelWords * band_;
+    for (const std::uint32_t distance : distances_[side]) {
+        if (distance == 0) load(own, begin);
+        for (std::size_t pe = 0; distance > 0 && pe < pes_; ++pe)
+            bus_.send(own, {(pe + distance) % pes_, pitch, kPixelWords * begin}, ring_.blocks(), {pe, block, 0},
+                      words_from(begin));
+        arrived({ring_.blocks(), side, distance, begin});
+    }
+}
+
+// From each PE in turn to all, where one of them needs what another has.
+void NeighbourExchange::hear(const Buffer<float>& own, std::initializer_list<raya_u32> sides, std::uint32_t begin,
+                             const Arrived& arrived) {
+    const std::size_t pitch = kPixelWords * capacity_, block = kPixelWords * band_;
+    const bool needed = std::ranges::any_of(
+        sides, [&](raya_u32 side) { return !distances_[side].empty() && distances_[side].back() > 0; });
+    for (std::size_t pe = 0; needed && pe < pes_; ++pe)
+        bus_.broadcast_from(own, {pe, pitch, kPixelWords * begin}, *heard_, {pe, block, 0}, words_from(begin));
+    for (const raya_u32 side : sides)
+        for (const std::uint32_t distance : distances_[side]) {
+            distance == 0 ? load(own, begin) : ring_.take(*heard_, distance);
+            arrived({ring_.blocks(), side, distance, begin});
+        }
+}
+
+void NeighbourExchange::load(const Buffer<float>& own, std::uint32_t begin) {
+    ring_.load(own, kPixelWords * capacity_, kPixelWords * begin);
+}
+
+// Of a band, as many as there are.
+std::size_t NeighbourExchange::words_from(std::uint32_t begin) const {
+    return kPixelWords * std::min(band_, capacity_ - begin);
 }
 
 }  // namespace raya

@@ -1,10 +1,14 @@
-// Neighbour pixels for every PE: rotations that bring the blocks in which they lie.
+// Neighbour pixels for every PE: moves over ring or bus that bring the blocks in which they lie.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
+#include <optional>
 #include <vector>
 
+#include "host/ring/bus.hpp"
+#include "host/ring/exchange_plan.hpp"
 #include "host/ring/ring.hpp"
 
 namespace raya {
@@ -12,34 +16,44 @@ namespace raya {
 /// A block that has arrived in every PE.
 struct Arrival {
     Buffer<float>& blocks;   // [PE][band][3]
+    raya_u32 side;           // on which some PE finds neighbours in it, RAYA_LEFT..RAYA_BELOW
     std::uint32_t distance;  // PE i holds words of PE (i + distance) mod P
     std::uint32_t begin;     // number in that PE's share of the block's first pixel
 };
 
-/// What goes round are bands of each PE's pixels, `band` pixels long: the whole share where the PE's memory has room
-/// for a second one (see PeMemory), else a part of it, and then all parts in turn.
+/// What moves are bands of each PE's pixels, `band` pixels long: the whole share where the PE's memory has room for a
+/// second one (see PeMemory), else a part of it, and then all parts in turn.
 class NeighbourExchange {
   public:
     /// `capacity`: pixels in each PE's memory; `band`: 1..capacity.
     NeighbourExchange(Session& session, Communication& counted, const raya_mapping& mapping, std::uint32_t capacity,
-                      std::uint32_t band);
+                      std::uint32_t band, ExchangeWay way = ExchangeWay::kRing);
 
     std::uint32_t band() const { return band_; }
 
-    /// Takes the pixels of all PEs, `own` as [PE][capacity][3], round the ring the shortest way that passes every PE's
-    /// neighbours on `side` (RAYA_LEFT..RAYA_BELOW), and calls `arrived` for each block in which some PE finds some.
-    void visit(const Buffer<float>& own, raya_u32 side, const std::function<void(const Arrival&)>& arrived);
-
-    /// Rotations of one visit of each side, by the routes.
-    std::uint64_t rotations() const;
+    /// Brings the pixels of all PEs, `own` as [PE][capacity][3], to the PEs whose neighbours on `sides` they are, and
+    /// calls `arrived` for each block in which some PE finds some. Of several sides none is first: whoever needs an
+    /// order asks for them one by one.
+    void visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides,
+               const std::function<void(const Arrival&)>& arrived);
 
   private:
-    void travel(const Buffer<float>& own, const Leg& leg, std::uint32_t begin,
-                const std::function<void(const Arrival&)>& arrived);
+    using Arrived = std::function<void(const Arrival&)>;
+
+    void turn(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
+    void fetch(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
+    void hear(const Buffer<float>& own, std::initializer_list<raya_u32> sides, std::uint32_t begin,
+              const Arrived& arrived);
+    void load(const Buffer<float>& own, std::uint32_t begin);
+    std::size_t words_from(std::uint32_t begin) const;
 
     std::uint32_t pes_, capacity_, band_;
-    std::array<std::vector<Leg>, RAYA_SIDES> routes_;
+    ExchangeWay way_;
+    std::array<std::vector<std::uint32_t>, RAYA_SIDES> distances_;
     Ring ring_;
+    Bus bus_;
+    std::optional<Buffer<float>> heard_;  // [PE][band][3], of broadcasts; a PE needs one block, as it takes what it
+                                          // needs of each while it passes
 };
 
 }  // namespace raya

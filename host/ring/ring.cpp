@@ -20,20 +20,19 @@ void Ring::load(const Buffer<float>& own, std::size_t own_words, std::size_t beg
 }
 
 void Ring::rotate(Turn turn) {
-    const std::size_t last = (pes_ - 1) * block_words_;
-    const auto move = [&](const char* label, std::size_t from, std::size_t to, std::size_t words) {
-        session_.copy(label, front_, from, back_, to, words);
-        counted_.rotation_words += words;
-    };
-    if (turn == Turn::kDown) {
-        move("ring.rotate_down", block_words_, 0, last);
-        move("ring.rotate_down", 0, last, block_words_);
-    } else {
-        move("ring.rotate_up", 0, block_words_, last);
-        move("ring.rotate_up", last, 0, block_words_);
-    }
+    if (turn == Turn::kDown)
+        shift("ring.rotate_down", front_, back_, 1);
+    else
+        shift("ring.rotate_up", front_, back_, pes_ - 1);
     counted_.rotations += 1;
+    counted_.rotation_words += pes_ * block_words_;
     std::swap(front_, back_);
+}
+
+void Ring::shift(const char* label, const Buffer<float>& from, Buffer<float>& to, std::size_t distance) {
+    const std::size_t first = distance % pes_ * block_words_, all = pes_ * block_words_;
+    session_.copy(label, from, first, to, 0, all - first);
+    session_.copy(label, from, 0, to, all - first, first);
 }
 
 }  // namespace raya

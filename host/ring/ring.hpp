@@ -23,10 +23,17 @@ class Ring {
     /// One rotation of all blocks, wrap-around included.
     void rotate(Turn turn);
 
+    /// No transfer of the ring's: PE i takes the block of PE (i + distance) mod P out of `heard`, [PE][block_words],
+    /// which all PEs have heard over the bus.
+    void take(const Buffer<float>& heard, std::size_t distance) { shift("ring.take", heard, front_, distance); }
+
     /// The block that each PE holds now, [PE][block_words].
     Buffer<float>& blocks() { return front_; }
 
   private:
+    /// The one way in which blocks of all PEs move: PE i of `to` gets the block of PE (i + distance) mod P of `from`.
+    void shift(const char* label, const Buffer<float>& from, Buffer<float>& to, std::size_t distance);
+
     Session& session_;
     Communication& counted_;
     std::size_t pes_, block_words_;

@@ -116,7 +116,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
                               .capacity = memory_.block_pixels,
                               .group_size = options.group_size};
     exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
-                                                    memory_.band_pixels);
+                                                    memory_.band_pixels, settings_.antialias.exchange);
     if (settings_.antialias.method == AntialiasMethod::kFilter) {
         filter_ = std::make_unique<RingFilter>(kernels, setup);
         return;

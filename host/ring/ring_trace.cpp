@@ -9,7 +9,6 @@
 #include "host/machine/budget.hpp"
 #include "host/report/traced_pes.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/ring/route.hpp"
 
 namespace raya {
 namespace {
@@ -102,19 +101,26 @@ Load quarter(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), s
     return load_of(std::move(cycles));
 }
 
-std::uint64_t rotations_of(const raya_mapping& m, const PeMemory& memory, std::uint32_t side) {
-    std::uint64_t turns = 0;
-    for (const Leg& leg : shortest_route(m.pes, neighbour_distances(m, side))) turns += leg.turns();
-    return turns * ((memory.block_pixels + memory.band_pixels - 1) / memory.band_pixels);
-}
+// What a move is called, and all of a side's. Those of the bus concern a PE or two each, so that no PE's track shows
+// them one by one.
+struct MoveNames {
+    const char *one, *all;
+};
+constexpr std::array<MoveNames, 3> kMoves = {  // in the order of ExchangeWay
+    {{"rotate", "rotations"}, {"send over the bus", "transfers"}, {"broadcast from each PE", "broadcasts"}}};
 
-void add_smoothing(RingTimeline& line, const RingSettings& s, const RingResult& r, double rotation_ms) {
+void add_smoothing(RingTimeline& line, const RingSettings& s, const RingResult& r, double communication_ms) {
     const bool filter = s.antialias.method == AntialiasMethod::kFilter;
+    const MoveNames& names = kMoves[static_cast<std::size_t>(s.antialias.exchange)];
+    const MovesOfSides of_sides = smoothing_moves(s.antialias, s.mapping);
+    const auto all = static_cast<double>(std::max<std::uint64_t>(1, sum_of(of_sides)));
+    const std::uint64_t bands = (r.pe_memory.block_pixels + r.pe_memory.band_pixels - 1) / r.pe_memory.band_pixels;
     for (std::uint32_t side = 0; side < RAYA_SIDES; ++side) {
-        const std::uint64_t turns = rotations_of(s.mapping, r.pe_memory, side);
-        if (turns > 0)
-            line.together(fmt::format("rotate, for neighbours {}", kSides[side]),
-                          rotation_ms * static_cast<double>(turns), {{"rotations", turns}}, turns);
+        const std::uint64_t moves = of_sides[side] * bands;
+        if (moves > 0)
+            line.together(fmt::format("{}, for neighbours {}", names.one, kSides[side]),
+                          communication_ms * static_cast<double>(of_sides[side]) / all, {{names.all, moves}},
+                          s.antialias.exchange == ExchangeWay::kRing ? moves : 1);
         line.compute(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
                      quarter(s.mapping, filter ? filter_cycles : compare_cycles, side));
     }
@@ -138,8 +144,7 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
     line.together("broadcast", time->objects_ms, {{"words", c.broadcast_words}});
     line.trace_rays(result.phases[0].name, result.phases[0].load);
     if (settings.antialias.method != AntialiasMethod::kNone)
-        add_smoothing(line, settings, result,
-                      c.rotations > 0 ? time->communication_ms / static_cast<double>(c.rotations) : 0);
+        add_smoothing(line, settings, result, time->communication_ms);
     if (result.phases.size() > 1) line.trace_rays(result.phases[1].name, result.phases[1].load);
     line.together("gather", time->image_ms, {{"words", c.gather_words}});
     trace.metadata()["machine"] = {{"name", settings.machine.name},

@@ -64,6 +64,7 @@ void verify_transfers(Verification& v) {
                                            {{0, 64, 0}, {0, 64, 64}, 64, 63}};
     check("copies of blocks", [&](Session& s) { return check_copies(s, copies); });
     check("bus: broadcast and gather", [](Session& s) { return check_bus(s); });
+    check("bus: transfers between 31 PEs", [](Session& s) { return check_transfers(s, 31, 100); });
     using Sizes = std::pair<std::size_t, std::size_t>;
     for (const auto& [pes, words] : {Sizes{2, 1}, {7, 100}, {256, 768}})
         check(fmt::format("ring: rotations of {} PEs", pes),

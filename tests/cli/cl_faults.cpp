@@ -2,6 +2,8 @@
 //   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer, and all after it, return -4 and do nothing
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer says that it is done, and is not;
 //                                             clEnqueueCopyBufferRect likewise
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third one ends one length of itself further on, or before where the
+//                                             buffer ends there: in the memory of another PE
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third, and all after it, end the program by SIGSEGV
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   or with exit code 1
 //   RAYA_FAULT="clFinish 1 slow"              the first, and all after it, take two seconds and a half longer
@@ -28,7 +30,7 @@ namespace {
 struct Fault {
     std::string call;
     int at = 0;        // 1: the first call; of new: bytes
-    std::string what;  // "lost", "crash", "exit", "slow", or empty
+    std::string what;  // "lost", "astray", "crash", "exit", "slow", or empty
     cl_int error = CL_SUCCESS;
 
     Fault() {
@@ -48,18 +50,18 @@ const Fault& wanted() {
 cl_int fault_of(const char* call) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
-    if (fault.call != call || fault.what == "lost" || ++calls < fault.at) return CL_SUCCESS;
+    if (fault.call != call || fault.what == "lost" || fault.what == "astray" || ++calls < fault.at) return CL_SUCCESS;
     if (fault.what == "crash") std::raise(SIGSEGV);
     if (fault.what == "exit") std::_Exit(1);
     if (fault.what == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     return fault.error;
 }
 
-/// Whether this copy is not to be done.
-bool is_lost(const char* call) {
+/// Whether this copy is not to be done, or not to where it should go.
+bool goes_wrong(const char* call, const char* how) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
-    return fault.what == "lost" && fault.call == call && ++calls % fault.at == 0;
+    return fault.what == how && fault.call == call && ++calls % fault.at == 0;
 }
 
 template <class Function>
@@ -81,6 +83,13 @@ auto object(const char* name, cl_int* error, Args... args) -> decltype(real<Func
     if (fault == CL_SUCCESS) return real<Function>(name)(args..., error);
     if (error != nullptr) *error = fault;
     return nullptr;
+}
+
+/// Where a copy goes that is to be led astray; to its place, if the buffer has no other.
+size_t next_door(cl_mem buffer, size_t offset, size_t size) {
+    size_t bytes = 0;
+    clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);
+    return offset + 2 * size <= bytes ? offset + size : offset >= size ? offset - size : offset;
 }
 
 /// In place of a copy: a command that is done in the end, with its times, and that moves a byte to nowhere.
@@ -140,7 +149,8 @@ cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl
 cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
                                        size_t to_offset, size_t size, cl_uint waits, const cl_event* wait_list,
                                        cl_event* event) {
-    if (is_lost("clEnqueueCopyBuffer")) return command_without_copy(queue, from, waits, wait_list, event);
+    if (goes_wrong("clEnqueueCopyBuffer", "lost")) return command_without_copy(queue, from, waits, wait_list, event);
+    if (goes_wrong("clEnqueueCopyBuffer", "astray")) to_offset = next_door(to, to_offset, size);
     return command<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer", queue, from, to, from_offset, to_offset, size,
                                                   waits, wait_list, event);
 }
@@ -149,7 +159,8 @@ cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, 
                                            const size_t* to_origin, const size_t* region, size_t from_row,
                                            size_t from_slice, size_t to_row, size_t to_slice, cl_uint waits,
                                            const cl_event* wait_list, cl_event* event) {
-    if (is_lost("clEnqueueCopyBufferRect")) return command_without_copy(queue, from, waits, wait_list, event);
+    if (goes_wrong("clEnqueueCopyBufferRect", "lost"))
+        return command_without_copy(queue, from, waits, wait_list, event);
     return command<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin,
                                                       to_origin, region, from_row, from_slice, to_row, to_slice, waits,
                                                       wait_list, event);

@@ -46,7 +46,7 @@ void check_rotations(const Document& report) {
 
 TEST_CASE("the report of an anti-aliased render has keys of its own", "[cli]") {
     std::set<std::string> keys = fixed_keys();
-    keys.insert("antialias.band_pixels count");
+    keys.insert({"antialias.band_pixels count", "antialias.exchange string"});
     CHECK(keys_of(RenderFiles("planes", {"--antialias", "filter"}).report()) == keys);
     keys.insert({"antialias.threshold number", "antialias.points string", "antialias.recomputed_pixels count",
                  "antialias.recomputed_share number"});
@@ -67,7 +67,7 @@ TEST_CASE("without anti-aliasing the report says so", "[cli]") {
 TEST_CASE("the report of a filtered render adds up", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "filter", "--offset", "3"});
     const Document report = files.report(), plain = RenderFiles("planes", {"--offset", "3"}).report();
-    CHECK(report["antialias"] == Document{{"method", "filter"}, {"band_pixels", kTestHeight}});
+    CHECK(report["antialias"] == Document{{"method", "filter"}, {"exchange", "ring"}, {"band_pixels", kTestHeight}});
     CHECK(report["communication"]["rotations"] == 2 + 2 * 3);  // a column for each PE: 1 PE aside, 3 PEs up and down
     check_rotations(report);
     for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain[part]);
@@ -77,6 +77,33 @@ TEST_CASE("the report of a filtered render adds up", "[cli]") {
     for (const char* label : {"filter.sum_rows", "filter.sum_columns"}) CHECK(launches_of(report, label) == 2);
     CHECK(launches_of(report, "filter.take_means") == 1);
     CHECK_THAT(files.run().out, Catch::Contains("ring    8 rotations, " + std::to_string(8 * 20 * 3 * 12) + " words"));
+}
+
+TEST_CASE("neighbours that come over the bus are counted, charged and told, and change no pixel", "[cli]") {
+    const auto options = [](const std::string& way) {
+        return Words{"--antialias", "supersample", "--offset", "3", "--exchange", way};
+    };
+    const Document ring = RenderFiles("planes", options("ring")).report();
+    const RenderFiles bus("planes", options("bus")), broadcast("planes", options("bus-broadcast"));
+    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // words of a PE, which has a column
+    for (const RenderFiles* files : {&bus, &broadcast}) {
+        const Document report = files->report();
+        const Document& words = report["communication"];
+        const bool sends = files == &bus;
+        CHECK(report["image"]["hash"] == ring["image"]["hash"]);
+        CHECK(report["load"] == ring["load"]);
+        CHECK(words["rotations"] == 0);
+        CHECK(words["transfers"] == (sends ? 4 * kTestWidth : 0));  // an offset a side; broadcasts serve all sides
+        CHECK(words["pe_broadcasts"] == (sends ? 0 : kTestWidth));
+        const std::uint64_t moves = sends ? words["transfers"] : words["pe_broadcasts"];
+        CHECK(words[sends ? "transfer_words" : "pe_broadcast_words"] == moves * kBlock);
+        CHECK(launches_of(report, sends ? "bus.send" : "bus.broadcast_from") == moves);
+        CHECK(report["modelled_ms"]["communication"] ==
+              Approx(static_cast<double>(moves) * (0.1845 + kBlock / 6e3)).epsilon(1e-9));
+        const std::string line = sends ? " transfers between PEs, " : " broadcasts by PEs, ";
+        CHECK_THAT(files->run().out, Catch::Contains("bus     " + std::to_string(moves) + line +
+                                                     std::to_string(moves * kBlock) + " words"));
+    }
 }
 
 TEST_CASE("the report of a supersampled render adds up", "[cli]") {
@@ -147,6 +174,8 @@ TEST_CASE("options of supersampling are refused out of range and without it", "[
     refused({"--antialias", "blur"}, {"--antialias blur", "none, filter or supersample"});
     refused({"--antialias", ""}, {"--antialias", "must not be empty"});
     refused(supersample({"--points", "corners"}), {"--points corners", "axes or diagonals"});
+    refused(supersample({"--exchange", "torus"}), {"--exchange torus", "ring, bus or bus-broadcast"});
+    refused({"--exchange", "bus"}, {"--exchange", "give --antialias as well"});
     for (const std::string value : {"-0.1", "1.001", "nan", "inf"})
         refused(supersample({"--threshold", value}), {"--threshold", "must be 0..1"});
     refused(supersample({"--threshold", "0.125x"}), {"--threshold 0.125x: not a number", "0..1"});

@@ -1,10 +1,13 @@
-// A driver that says it has copied, and has not: raya verify sees it in the check of the copies, and in images.
+// A driver that says it has copied, and has not, or to elsewhere: raya verify sees it in the check of the copies, and
+// in images.
 #include <algorithm>
 #include <sstream>
 #include <utility>
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {
@@ -29,18 +32,20 @@ Outcome verify_losing(const std::string& fault, const std::string& only) {
 TEST_CASE("copies that are lost are seen by the checks of what copies", "[cli][verify]") {
     struct Row {
         const char* fault;
-        long rings, blocks, links;
+        long rings, transfers, blocks, links;
     };
     for (const Row& row :
-         {Row{"clEnqueueCopyBuffer 2 lost", 3, 0, 0}, Row{"clEnqueueCopyBufferRect 1 lost", 0, 1, 4}}) {
+         {Row{"clEnqueueCopyBuffer 2 lost", 3, 1, 0, 0}, Row{"clEnqueueCopyBuffer 40 astray", 1, 1, 0, 0},
+          Row{"clEnqueueCopyBufferRect 1 lost", 0, 0, 1, 4}}) {
         const Outcome run = verify_losing(row.fault, "machine");
         INFO(run.told());
         CHECK(run.code == 4);
         const Words wrong = checks_with(run, "FAIL  machine   ");
         CHECK(count_of(wrong, "ring: rotations of") == row.rings);
+        CHECK(count_of(wrong, "bus: transfers") == row.transfers);
         CHECK(count_of(wrong, "copies of blocks") == row.blocks);
         CHECK(count_of(wrong, "exchange of") == row.links);
-        CHECK(row.rings + row.blocks + row.links == static_cast<long>(wrong.size()));
+        CHECK(row.rings + row.transfers + row.blocks + row.links == static_cast<long>(wrong.size()));
         CHECK(contains(run.out, "words are not where they should be"));
     }
 }
@@ -53,6 +58,25 @@ TEST_CASE("copies that are lost are seen in the images of both machines", "[cli]
         INFO(lost.told());
         CHECK(lost.code == 4);
         CHECK(checks_with(lost, "FAIL  image     ").size() == 1);
+    }
+}
+
+TEST_CASE("a transfer over the bus that goes to the wrong PE is seen in the image", "[cli][verify]") {
+    const ScratchFolder folder;
+    const auto hash_of = [&](const std::string& way, const std::string& fault) {
+        const Outcome run = run_raya(
+            {"render", scene_file("planes"), "-o", folder / "i.pfm", "--report", folder / "r.json", "--size", "20x12",
+             "--pes", "20", "--offset", "3", "--lanes", "4", "--antialias", "filter", "--exchange", way},
+            failing_device(fault));
+        INFO(run.told());
+        REQUIRE(run.code == 0);
+        return Document::parse(file_contents(folder / "r.json"))["image"]["hash"].get<std::string>();
+    };
+    const std::string whole = hash_of("ring", "clEnqueueCopyBuffer 1000000 astray");
+    for (const std::string way : {"bus", "bus-broadcast"}) {
+        CAPTURE(way);
+        CHECK(hash_of(way, "clEnqueueCopyBuffer 1000000 astray") == whole);
+        CHECK(hash_of(way, "clEnqueueCopyBuffer 30 astray") != whole);
     }
 }
 

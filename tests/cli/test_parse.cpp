@@ -38,6 +38,9 @@ TEST_CASE("links, methods, points and sampling are read, and other words refused
         CHECK(parse_antialias(antialias_name(method)) == method);
     CHECK(parse_points("axes") == RAYA_POINTS_AXES);
     CHECK(parse_points("diagonals") == RAYA_POINTS_DIAGONALS);
+    CHECK(parse_exchange("ring") == ExchangeWay::kRing);
+    CHECK(parse_exchange("bus") == ExchangeWay::kBus);
+    CHECK(parse_exchange("bus-broadcast") == ExchangeWay::kBroadcast);
     CHECK(parse_sampling("centres") == Sampling::kCentres);
     CHECK(parse_sampling("corners") == Sampling::kCorners);
     for (const std::string text : {"", "torus", "torus4d", "Torus3d", "torus3d ", "none ", "axis", "centers"}) {
@@ -46,6 +49,7 @@ TEST_CASE("links, methods, points and sampling are read, and other words refused
         CHECK_THROWS_WITH(parse_links(text),
                           Contains("--links " + text + ":") && Contains("torus3d") && Contains("torus2d"));
         CHECK_THROWS_WITH(parse_antialias(text), Contains("--antialias " + text + ":") && Contains("supersample"));
+        CHECK_THROWS_WITH(parse_exchange(text), Contains("--exchange " + text + ":") && Contains("bus-broadcast"));
         CHECK_THROWS_WITH(parse_points(text), Contains("--points " + text + ":") && Contains("axes or diagonals"));
         CHECK_THROWS_WITH(parse_sampling(text), Contains("--sampling " + text + ":") && Contains("centres or corners"));
     }

@@ -30,6 +30,7 @@ TEST_CASE("the torus refuses the options of rings, with reason and remedy", "[cl
                       {{"--fold", "block"}, {"--fold block" + with, "not pixels", "leave it out"}},
                       {{"--pes", "64"}, {"--pes 64" + with, "nodes", "--nodes IxJxK"}},
                       {{"--antialias", "filter"}, {"--antialias filter" + with, "neighbours", "choose a ring"}},
+                      {{"--exchange", "bus"}, {"--exchange bus" + with, "neighbours", "choose a ring"}},
                       {{"--threshold", "0.5"}, {"--threshold 0.5" + with, "neighbours", "choose a ring"}},
                       {{"--points", "axes"}, {"--points axes" + with, "neighbours", "choose a ring"}},
                       {{"--mask", "m.png"}, {"--mask m.png" + with, "neighbours", "choose a ring"}},

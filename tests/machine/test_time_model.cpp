@@ -41,6 +41,16 @@ TEST_CASE("rotations of a column of 256 pixels take the paper's time", "[machine
           Approx(34 * (0.1845 + 0.256)).epsilon(1e-12));
 }
 
+// The bus carries one PE's words at a time: a transfer takes what a rotation of all PEs does.
+TEST_CASE("transfers and broadcasts of PEs come one after another", "[machine]") {
+    const auto ms = [](const Communication& c) { return time_of({load_with(0)}, c).communication_ms; };
+    CHECK(ms({.transfers = 1, .transfer_words = 768}) == Approx(0.3125).epsilon(1e-12));
+    CHECK(ms({.transfers = 1024, .transfer_words = 1024 * 768}) == Approx(320).epsilon(1e-12));
+    CHECK(ms({.pe_broadcasts = 256, .pe_broadcast_words = 256 * 768}) == Approx(80).epsilon(1e-12));
+    CHECK(ms({.rotations = 2, .rotation_words = 2 * 256 * 768, .transfers = 3, .transfer_words = 600}) ==
+          Approx(2 * 0.3125 + 3 * 0.1845 + 0.1).epsilon(1e-12));
+}
+
 TEST_CASE("the image of 256 x 256 takes 140 ms to the host, the objects a few words' time", "[machine]") {
     const ModelledTime time =
         time_of({load_with(0)}, {.broadcasts = 1, .broadcast_words = 1000, .gathers = 1, .gather_words = 196'608});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/checks/transfers.hpp"
+#include "host/ring/bus.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/ring.hpp"
@@ -154,25 +155,65 @@ TEST_CASE("a band at the end of the share loads the words that are left and keep
     CHECK(shorter > 20);
 }
 
-TEST_CASE("an exchange brings every band from every distance once, and turns as often as it says", "[ring]") {
+TEST_CASE("transfers over the bus and broadcasts by PEs bring every block to its place", "[ring][bus]") {
+    Session session(choose_device(""));
+    for (const std::size_t pes : kRings)
+        for (const std::size_t block : {1, 3, 17, 768}) {
+            CAPTURE(pes, block);
+            CHECK(check_transfers(session, pes, block).outcome == Outcome::kPass);
+        }
+}
+
+TEST_CASE("what PEs send over the bus is counted as the words that were copied", "[ring][bus]") {
+    constexpr std::uint64_t kSeed = 15;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    for (int i = 0; i < 50; ++i) {
+        const std::size_t pes = kRings[i % 5], share = 1 + random_below(random, 40);
+        const std::size_t words = 1 + random_below(random, share);
+        const std::uint32_t sent = random_below(random, 5), told = random_below(random, 5);
+        CAPTURE(kSeed, i, pes, share, words, sent, told);
+        Communication counted;
+        Bus bus(session, counted);
+        const Bits mine = random_words(random, pes * share);
+        const Buffer<float> own = filled(session, "own", mine);
+        Buffer<float> blocks = filled(session, "blocks", random_words(random, pes * words));
+        session.clear_profile();
+        for (std::uint32_t n = 0; n < sent; ++n)
+            bus.send(own, {n % pes, share, share - words}, blocks, {(n + 1) % pes, words, 0}, words);
+        for (std::uint32_t n = 0; n < told; ++n)
+            bus.broadcast_from(own, {n % pes, share, 0}, blocks, {n % pes, words, 0}, words);
+        CHECK((counted.transfers == sent && counted.transfer_words == sent * words));
+        CHECK((counted.pe_broadcasts == told && counted.pe_broadcast_words == told * words));
+        CHECK(copied_bytes(session, "bus.send") == 4 * counted.transfer_words);
+        CHECK(copied_bytes(session, "bus.broadcast_from") == 4 * counted.pe_broadcast_words);
+        CHECK(other_commands(session) == 0);
+        CHECK((counted.rotations == 0 && counted.broadcasts == 0 && counted.gathers == 0));
+        CHECK(contents(session, own) == mine);
+    }
+}
+
+TEST_CASE("an exchange brings every band from every distance once, and moves as often as it says", "[ring][bus]") {
     constexpr std::uint64_t kSeed = 12;
+    const ExchangeWay way = GENERATE(ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast);
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (int i = 0; i < 100; ++i) {
         const raya_mapping m = any_mapping(random, 8);
         const std::uint32_t capacity = largest_share(m), band = 1 + random_below(random, capacity);
-        CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind, capacity, band);
+        CAPTURE(kSeed, i, exchange_name(way), m.width, m.height, m.pes, mapping_text(m), m.kind, capacity, band);
         const Bits mine = random_words(random, std::size_t{m.pes} * capacity * 3);
         const Buffer<float> own = filled(session, "own", mine);
         Communication counted;
-        NeighbourExchange exchange(session, counted, m, capacity, band);
+        NeighbourExchange exchange(session, counted, m, capacity, band, way);
         std::uint32_t wrong = 0;
         for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
             const std::vector<std::uint32_t> distances = neighbour_distances(m, side);
             std::vector<std::uint64_t> awaited, came;
             for (std::uint32_t begin = 0; begin < capacity; begin += band)
                 for (const std::uint32_t d : distances) awaited.push_back(std::uint64_t{begin} << 32 | d);
-            exchange.visit(own, side, [&](const Arrival& arrival) {
+            exchange.visit(own, {side}, [&](const Arrival& arrival) {
+                CHECK(arrival.side == side);
                 came.push_back(std::uint64_t{arrival.begin} << 32 | arrival.distance);
                 const Bits blocks = contents(session, arrival.blocks);
                 for (std::size_t pe = 0; pe < m.pes; ++pe)
@@ -185,8 +226,16 @@ TEST_CASE("an exchange brings every band from every distance once, and turns as 
             CHECK(came == awaited);
         }
         CHECK(wrong == 0);
-        CHECK(counted.rotations == exchange.rotations());
+        const std::uint64_t bands = (capacity + band - 1) / band, moves = sum_of(exchange_moves(m, way, false));
+        const std::uint64_t whole =
+            3ull * capacity * moves;  // words: a last band that is short moves as many as it has
+        const bool ring = way == ExchangeWay::kRing, bus = way == ExchangeWay::kBus;
+        CHECK(counted.rotations == (ring ? moves * bands : 0));
         CHECK(counted.rotation_words == counted.rotations * m.pes * band * 3);
+        CHECK(counted.transfers == (bus ? moves * bands : 0));
+        CHECK(counted.transfer_words == (bus ? whole : 0));
+        CHECK(counted.pe_broadcasts == (ring || bus ? 0 : moves * bands));
+        CHECK(counted.pe_broadcast_words == (ring || bus ? 0 : whole));
         CHECK(contents(session, own) == mine);
     }
 }

@@ -98,6 +98,26 @@ TEST_CASE("the traced machine ends when the time model says, with the loads that
     }
 }
 
+TEST_CASE("the bus's transfers stand in the trace where rotations would, and take the modelled time", "[ring]") {
+    for (const ExchangeWay way : {ExchangeWay::kBus, ExchangeWay::kBroadcast})
+        for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
+            RingCase c{.width = 24, .height = 16, .pes = 24, .offset = 5, .machine = "spa", .lanes = 4};
+            c.antialias = {.method = method, .exchange = way};
+            const Rendered r = render(c);
+            const Document json = trace_of(r, 24);
+            const TraceSchema schema(json);
+            CHECK(schema.faults() == std::vector<std::string>{});
+            CHECK(std::abs(static_cast<double>(end_of(schema.slices().at({kTraceMachine, 1}))) - modelled_ns(r)) < 2);
+            std::uint64_t moves = 0;
+            for (const Document& e : json["traceEvents"])
+                if (e["ph"] == "X" && e["tid"] == 1)
+                    moves += e["args"].value("transfers", 0) + e["args"].value("broadcasts", 0);
+            const Communication& counted = r.result.communication;
+            CHECK(moves == counted.transfers + counted.pe_broadcasts);
+            CHECK(moves > 0);
+        }
+}
+
 TEST_CASE("the counter of live rays comes down from all PEs to none", "[ring]") {
     const Rendered r = render({.width = 40, .height = 8, .pes = 40, .offset = 0, .machine = "spa", .lanes = 4});
     double last = 41;

@@ -110,9 +110,7 @@ std::uint32_t turns_round_widest_gap(std::uint32_t pes, Distances stops) {
 }
 
 std::uint64_t exchange_rotations(const raya_mapping& m, std::uint32_t capacity, std::uint32_t band) {
-    Session session(choose_device(""));
-    Communication counted;
-    return NeighbourExchange(session, counted, m, capacity, band).rotations();
+    return sum_of(exchange_moves(m, ExchangeWay::kRing, false)) * ((capacity + band - 1) / band);
 }
 
 }  // namespace
@@ -194,4 +192,30 @@ TEST_CASE("four sides take 2 (min(p, P - p) + 1) rotations where a PE owns whole
             CHECK(exchange_rotations(m, 20, 7) == 3 * rotations);   // the last of which may be shorter
         }
     CHECK(exchange_rotations({6, 4, 1, 3, RAYA_FOLD_BLOCK}, 24, 5) == 0);  // one PE has all neighbours itself
+}
+
+TEST_CASE("over the bus each PE costs a transfer for each distant offset, or one broadcast", "[ring][route]") {
+    constexpr std::uint64_t kSeed = 8;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 300; ++i) {
+        const raya_mapping m = any_mapping(random, 14);
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind);
+        std::uint64_t distant = 0, sides = 0;
+        for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
+            Distances d = defined_distances(m, side);
+            std::erase(d, 0);
+            distant += d.size();
+            sides += !d.empty();
+        }
+        for (const bool together : {false, true}) {
+            CHECK(sum_of(exchange_moves(m, ExchangeWay::kBus, together)) == m.pes * distant);
+            const std::uint64_t rounds = together ? sides > 0 : sides;
+            CHECK(sum_of(exchange_moves(m, ExchangeWay::kBroadcast, together)) == m.pes * rounds);
+        }
+    }
+    // The paper's array: 4 offsets of 256 PEs.
+    const raya_mapping paper{256, 256, 256, 16, RAYA_FOLD_CYCLIC};
+    CHECK(exchange_moves(paper, ExchangeWay::kRing, false) == MovesOfSides{1, 1, 16, 16});
+    CHECK(exchange_moves(paper, ExchangeWay::kBus, false) == MovesOfSides{256, 256, 256, 256});
+    CHECK(exchange_moves(paper, ExchangeWay::kBroadcast, true) == MovesOfSides{256, 0, 0, 0});
 }

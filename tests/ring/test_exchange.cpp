@@ -1,0 +1,138 @@
+// Ring, bus and broadcasts by PEs: the same neighbours, so the same bits; each is counted by a formula of its own.
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "host/ring/contrast.hpp"
+#include "host/ring/filter.hpp"
+#include "host/scene/word_records.hpp"
+#include "kernels/shared/job.h"
+#include "tests/ring/grid_scene.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/ring/small_mapping.hpp"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+constexpr ExchangeWay kWays[] = {ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast};
+
+/// Pixels of all PEs, [PE][capacity][3], and bands of them that move.
+struct Shares {
+    raya_mapping mapping{};
+    std::uint32_t capacity = 1, band = 1;
+    std::vector<float> pixels;
+    float threshold = 0;
+};
+
+/// What both methods make of the shares, and what they moved.
+struct Smoothed {
+    std::vector<float> filtered;
+    std::vector<std::uint8_t> marks;
+    Communication of_filter, of_contrast;
+};
+
+Smoothed smoothed(Kernels& kernels, const Shares& s, ExchangeWay way) {
+    Session& session = kernels.session();
+    raya_job job{};
+    job.mapping = s.mapping;
+    std::vector<std::uint32_t> words(kWordsOf<raya_job>);
+    put_record(words, 0, job);
+    const ExchangeSetup setup{session, session.buffer<std::uint32_t>("job", words.size()), s.mapping.pes, s.capacity,
+                              1};
+    Buffer<std::uint32_t> broadcast = setup.broadcast;
+    session.write("job", broadcast, words);
+    Buffer<float> pixels = session.buffer<float>("pixels", s.pixels.size());
+    session.write("pixels", pixels, s.pixels);
+    Smoothed answer{s.pixels, std::vector<std::uint8_t>(std::size_t{s.mapping.pes} * s.capacity), {}, {}};
+    NeighbourExchange for_contrast(session, answer.of_contrast, s.mapping, s.capacity, s.band, way);
+    RingContrast contrast(kernels, setup, s.threshold);
+    contrast.apply(pixels, for_contrast);
+    session.read("marks", contrast.marks(), answer.marks);
+    NeighbourExchange for_filter(session, answer.of_filter, s.mapping, s.capacity, s.band, way);
+    RingFilter(kernels, setup).apply(pixels, for_filter);
+    session.read("pixels", pixels, answer.filtered);
+    return answer;
+}
+
+Shares random_shares(SplitMix& random, std::uint32_t largest_side) {
+    Shares s;
+    s.mapping = any_mapping(random, largest_side);
+    if (random.next() % 16 == 0) s.mapping = {s.mapping.width, s.mapping.height, 1, 0, RAYA_FOLD_CYCLIC};
+    s.capacity = largest_share(s.mapping);
+    s.band = 1 + random_below(random, s.capacity);
+    s.pixels.resize(3ull * s.mapping.pes * s.capacity);
+    for (float& value : s.pixels) value = static_cast<float>(random_below(random, 769)) / 512 - 0.25f;
+    s.threshold = 0.125f * static_cast<float>(1 + random_below(random, 6));
+    return s;
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+    return std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
+}
+
+std::uint64_t moved(const Communication& c) { return c.rotations + c.transfers + c.pe_broadcasts; }
+
+/// The image and all that was counted, but for the moves.
+std::string rendered(Session& session, RingCase c, ExchangeWay way, Communication& counted) {
+    c.antialias.exchange = way;
+    const RingResult result = RingRenderer(session, grid_scene(c.height, c.sampling, 16), settings_of(c)).render();
+    counted = result.communication;
+    return pixel_hash(result.image) + pixel_hash(result.mask) + std::to_string(result.recomputed);
+}
+
+}  // namespace
+
+TEST_CASE("ring, bus and broadcasts smooth to the same bits and move what their formulas say", "[ring][bus]") {
+    constexpr std::uint64_t kSeed = 16;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    Kernels kernels(session, {.lanes = 1, .format = parse_format("e6m15")});
+    std::size_t alone = 0, narrow = 0, moving = 0;
+    for (unsigned i = 0; i < quick_cases(300, 1500); ++i) {
+        const Shares s = random_shares(random, i % 4 == 0 ? 2 : 12);
+        const raya_mapping& m = s.mapping;
+        CAPTURE(kSeed, i, m.width, m.height, m.pes, mapping_text(m), m.kind, s.capacity, s.band);
+        const Smoothed by_ring = smoothed(kernels, s, ExchangeWay::kRing);
+        const std::uint64_t bands = (s.capacity + s.band - 1) / s.band;
+        for (const ExchangeWay way : kWays) {
+            CAPTURE(exchange_name(way));
+            const Smoothed other = way == ExchangeWay::kRing ? by_ring : smoothed(kernels, s, way);
+            CHECK(same_bits(other.filtered, by_ring.filtered));
+            CHECK(other.marks == by_ring.marks);
+            CHECK(moved(other.of_filter) == bands * sum_of(exchange_moves(m, way, false)));
+            CHECK(moved(other.of_contrast) == bands * sum_of(exchange_moves(m, way, true)));
+        }
+        alone += m.pes == 1;
+        narrow += std::min(m.width, m.height) <= 2;
+        moving += moved(by_ring.of_filter) > 0;
+    }
+    CHECK((alone > 20 && narrow > 50 && moving > 150));
+}
+
+TEST_CASE("a render has the same image by ring, bus and broadcasts", "[ring][bus]") {
+    constexpr std::uint64_t kSeed = 17;
+    SplitMix random(kSeed);
+    Session session(choose_device(""));
+    for (const char* machine : {"grande", "spa"})  // without bands and with
+        for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
+            for (unsigned i = 0; i < quick_cases(2, 20); ++i) {
+                const bool large = machine == std::string("spa") && i == 0;
+                RingCase c{.width = large ? 45 : 1 + random_below(random, 24),
+                           .height = large ? 45 : 1 + random_below(random, 24),
+                           .machine = machine,
+                           .format = "spa22"};
+                c.pes = large ? 2 : 1 + random_below(random, c.width * c.height);
+                c.offset = random_below(random, c.width);
+                c.antialias.method = method;
+                CAPTURE(kSeed, machine, antialias_name(method), i, c.width, c.height, c.pes, c.offset);
+                Communication by_ring, by_bus, by_broadcast;
+                const std::string image = rendered(session, c, ExchangeWay::kRing, by_ring);
+                CHECK(rendered(session, c, ExchangeWay::kBus, by_bus) == image);
+                CHECK(rendered(session, c, ExchangeWay::kBroadcast, by_broadcast) == image);
+                CHECK((by_ring.transfers == 0 && by_bus.rotations == 0 && by_broadcast.rotations == 0));
+                CHECK((by_ring.rotations > 0) == (by_bus.transfers > 0));
+                CHECK((by_ring.rotations > 0) == (by_broadcast.pe_broadcasts > 0));
+            }
+}
+
+}  // namespace raya
