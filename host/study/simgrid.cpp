@@ -9,7 +9,6 @@
 #include "host/study/simgrid_peer.hpp"
 #include "host/study/studies.hpp"
 #include "host/study/torus_runs.hpp"
-#include "host/torus/history_recorder.hpp"
 
 namespace raya {
 namespace {
@@ -59,25 +58,17 @@ std::vector<Effect> effects() {
 
 Rows rows_of(Session& session, const LabelledScene& scene, std::uint32_t size, Links links, Injection inject,
              const std::filesystem::path& program) {
-    TorusSettings settings;
-    settings.machine = machine_named("torus");
-    settings.width = settings.height = size;
-    settings.links = links;
-    settings.torus = make_torus({4, 4, 4}, links);
-    settings.voxels = {4, 4, 4};
-    settings.inject = inject;
-    settings.packets = {.ray_words = 22, .return_a_ray = true};  // as Yoshitani & Yamazaki have them
-    settings.bounces = settings.machine.bounces;
-    settings.format = settings.machine.format;
-    settings.history = true;
-    TorusRenderer renderer(session, scene.scene, settings);
-    HistoryRecorder recorder(settings.torus, settings.packets);
-    const TorusResult result = renderer.render({}, {}, {}, 1, [&](const NodeWork& work) { recorder.add(work); });
-    const History history = recorder.finish();
-    const TorusTime bounds = torus_time(settings.torus, result);
+    TorusPlan plan;
+    plan.nodes = plan.voxels = {4, 4, 4};
+    plan.links = links;
+    plan.inject = inject;
+    plan.packets = kProtocolOfPaper.packets;
+    plan.asynchronous = true;
+    History history;
+    const TorusRun run = run_on_torus(session, scene, size, plan, {}, &history);
     Rows rows;
     for (const Effect& effect : effects()) {
-        const SimgridAnswer theirs = ask_simgrid(program, settings.torus, history, effect.machine);
+        const SimgridAnswer theirs = ask_simgrid(program, run.torus, history, effect.machine);
         if (theirs.delivered != history.messages.size())
             throw PeerFailure(
                 fmt::format("{}: {} of {} messages delivered", kProgram, theirs.delivered, history.messages.size()));
@@ -85,10 +76,10 @@ Rows rows_of(Session& session, const LabelledScene& scene, std::uint32_t size, L
                 .inject = inject == Injection::kRoot ? "root" : "all",
                 .effects = effect.name,
                 .messages = history.messages.size(),
-                .ours_ms = simulate(settings.torus, history, effect.machine).finish_ms,
+                .ours_ms = simulate(run.torus, history, effect.machine).finish_ms,
                 .simgrid_ms = theirs.finish_ms,
-                .overlapped_ms = bounds.overlapped_ms,
-                .stepwise_ms = bounds.stepwise_ms};
+                .overlapped_ms = run.overlapped_ms(),
+                .stepwise_ms = run.stepwise_ms()};
         row.ours_more_ms = row.ours_ms - (rows.empty() ? 0 : rows.back().ours_ms);
         row.simgrid_more_ms = row.simgrid_ms - (rows.empty() ? 0 : rows.back().simgrid_ms);
         rows.push_back(row);
@@ -119,6 +110,23 @@ std::string finding_of_effects(const Rows& rows) {
 std::string finding_of_bounds(const Row& row) {
     return finding("simgrid", "bounds", "shape"_a = row.shape, "inject"_a = row.inject, "ours"_a = row.ours_ms,
                    "overlapped"_a = row.overlapped_ms, "stepwise"_a = row.stepwise_ms);
+}
+
+// A line of each machine, by raya and by SimGrid, over its effects.
+StudyPlot plot_of(const Rows& rows) {
+    StudyPlot plot{"simgrid", "Time of the machine, one effect after another", "effects", "modelled ms", Axes::kLinear};
+    for (std::size_t first = 0; first < rows.size(); first += effects().size()) {
+        const std::string name = fmt::format("{}, {}, ", rows[first].shape, rows[first].inject);
+        PlotSeries ours{name + "raya", {}, {}}, theirs{name + "SimGrid", {}, {}, PlotStyle::kPoints};
+        for (std::size_t i = 0; i < effects().size(); ++i) {
+            for (PlotSeries* series : {&ours, &theirs}) series->x.push_back(static_cast<double>(i));
+            ours.y.push_back(rows[first + i].ours_ms);
+            theirs.y.push_back(rows[first + i].simgrid_ms);
+        }
+        plot.series.push_back(ours);
+        plot.series.push_back(theirs);
+    }
+    return plot;
 }
 
 }  // namespace
@@ -153,19 +161,7 @@ StudyPage simgrid_page(Session& session, const LabelledScene& scene, std::uint32
                              {"difference", &Row::difference, "%"},
                              {"raya, the effect", &Row::ours_more_ms, "ms"},
                              {"SimGrid, the effect", &Row::simgrid_more_ms, "ms"}})};
-    StudyPlot plot{"simgrid", "Time of the machine, one effect after another", "effects", "modelled ms", Axes::kLinear};
-    for (std::size_t first = 0; first < rows.size(); first += effects().size()) {
-        const std::string name = fmt::format("{}, {}, ", rows[first].shape, rows[first].inject);
-        PlotSeries ours{name + "raya", {}, {}}, theirs{name + "SimGrid", {}, {}, PlotStyle::kPoints};
-        for (std::size_t i = 0; i < effects().size(); ++i) {
-            for (PlotSeries* series : {&ours, &theirs}) series->x.push_back(static_cast<double>(i));
-            ours.y.push_back(rows[first + i].ours_ms);
-            theirs.y.push_back(rows[first + i].simgrid_ms);
-        }
-        plot.series.push_back(ours);
-        plot.series.push_back(theirs);
-    }
-    page.plots = {plot};
+    page.plots = {plot_of(rows)};
     page.news = {sentence("simgrid", "news")};
     return page;
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "host/machine/t805.hpp"
 #include "host/report/render_report.hpp"
@@ -105,7 +106,7 @@ std::uint64_t TorusRun::bytes_without_buffers() const {
 }
 
 TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_t size, const TorusPlan& plan,
-                      const PacketSink& sink) {
+                      const PacketSink& sink, History* history) {
     TorusRun run;
     run.plan = plan;
     TorusSettings settings = settings_of(plan, size);
@@ -130,7 +131,10 @@ TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_
         run.plan.queue = found.queue;
     }
     complete(run);
-    if (plan.asynchronous) run.time.asynchronous = simulate(run.torus, recorder.finish()).time();
+    if (!plan.asynchronous) return run;
+    History all = recorder.finish();
+    run.time.asynchronous = simulate(run.torus, all).time();
+    if (history) *history = std::move(all);
     return run;
 }
 

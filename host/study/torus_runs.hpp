@@ -9,6 +9,7 @@
 #include "host/study/laboratory.hpp"
 #include "host/study/paper.hpp"
 #include "host/study/scenes.hpp"
+#include "host/torus/history.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "host/torus/torus_time.hpp"
@@ -82,9 +83,9 @@ struct TorusRun {
 /// end, one of twice the length is tried, and so on up to the default; the run's plan says which it was. Not so where
 /// it is simulated without supersteps, which takes one render: Standstill then. Throws
 /// UserError, DeviceError as TorusRenderer does. `sink` as in TorusRenderer::render(); of a machine that stood still it
-/// has been told too.
+/// has been told too. `history`, where there is one: what is simulated without supersteps, if the plan asks for that.
 TorusRun run_on_torus(Session& session, const LabelledScene& scene, std::uint32_t size, const TorusPlan& plan,
-                      const PacketSink& sink = {});
+                      const PacketSink& sink = {}, History* history = nullptr);
 
 /// The same machine `groups` times over, group g with the pixels p of p mod `groups` = g; the plan's own pixels are not
 /// looked at. Pixels are numbered row by row.
