@@ -41,7 +41,8 @@ struct PacketCharge {
     std::uint32_t ray_words = RAYA_PACKET_WORDS;
     bool return_a_ray = false;  // one return for each ray that is no shadow ray, when its shadow rays are done
 
-    std::uint32_t return_words() const { return return_a_ray ? 6 : RAYA_RETURN_WORDS; }
+    static constexpr std::uint32_t kWholeReturnWords = 6;
+    std::uint32_t return_words() const { return return_a_ray ? kWholeReturnWords : RAYA_RETURN_WORDS; }
     std::uint32_t words_of(Makes made) const;
 };
 

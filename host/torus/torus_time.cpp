@@ -9,7 +9,7 @@ namespace raya {
 namespace {
 
 // What stepwise hides: see the header. The shortest packets are the worst case.
-constexpr std::uint32_t kWords = 6;  // of a return where one is a ray's
+constexpr std::uint32_t kWords = PacketCharge::kWholeReturnWords;
 static_assert(kWords < RAYA_RETURN_WORDS);
 static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kWords + kT805MessageCycles) * kT805CycleNs <
               kWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
