@@ -43,7 +43,6 @@ struct Range {
     double least, most;
     Range(const Images& images, Efficiency efficiency)
         : least(std::ranges::min(each(images, efficiency))), most(std::ranges::max(each(images, efficiency))) {}
-    double width() const { return most - least; }
 };
 
 StudyTable table_of_images(const Images& images, std::uint32_t p) {

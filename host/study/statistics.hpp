@@ -30,9 +30,6 @@ double student_probability(double t, std::size_t freedom);
 /// The t for which that probability is `confidence`, below 1 by 1e-5 or more.
 double student_t(double confidence, std::size_t freedom);
 
-/// ... 95 %.
-inline double student_t95(std::size_t freedom) { return student_t(0.95, freedom); }
-
 /// The exponent e for which c x^e lies nearest to y, by least squares of the logarithms; all above zero, two different
 /// x at least.
 double fitted_exponent(const std::vector<double>& x, const std::vector<double>& y);

@@ -15,10 +15,10 @@ TEST_CASE("Student's t at 95 % is the one in tables", "[statistics]") {
                                                       {30, 2.042}, {60, 2.000}, {99, 1.984}, {120, 1.980}};
     for (const auto& [freedom, t] : printed) {
         CAPTURE(freedom);
-        CHECK(student_t95(freedom) == Approx(t).margin(5e-4));
-        CHECK(student_probability(student_t95(freedom), freedom) == Approx(0.95).epsilon(1e-12));
+        CHECK(student_t(0.95, freedom) == Approx(t).margin(5e-4));
+        CHECK(student_probability(student_t(0.95, freedom), freedom) == Approx(0.95).epsilon(1e-12));
     }
-    CHECK(student_t95(100'000) == Approx(1.95996).margin(1e-4));  // the normal distribution's
+    CHECK(student_t(0.95, 100'000) == Approx(1.95996).margin(1e-4));  // the normal distribution's
 }
 
 TEST_CASE("Student's t of other levels is the one in tables too", "[statistics]") {
@@ -49,7 +49,7 @@ TEST_CASE("the probability within t runs from 0 to 1, and is the arc tangent's f
 TEST_CASE("an estimate is the mean and t standard errors of it", "[statistics]") {
     const Estimate four = estimate_of({2, 4, 4, 6});
     CHECK(four.mean == 4);
-    CHECK(four.half_width == Approx(student_t95(3) * std::sqrt(8.0 / 3 / 4)));
+    CHECK(four.half_width == Approx(student_t(0.95, 3) * std::sqrt(8.0 / 3 / 4)));
     CHECK(four.low() == Approx(4 - four.half_width));
     CHECK(four.high() == Approx(4 + four.half_width));
     CHECK(four.has_interval());
