@@ -35,8 +35,7 @@ void list_devices() {
     fmt::print(
         "\nlanes, group: what raya chooses unless given. --device takes a number, a type or a part of a name or "
         "version; so does RAYA_DEVICE.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and stands in the "
-        "report, e.g. "
-        "-cl-opt-disable where a compiler is in doubt.\n");
+        "report, e.g. -cl-opt-disable where a compiler is in doubt.\n");
 }
 
 }  // namespace

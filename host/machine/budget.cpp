@@ -75,8 +75,7 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .moves = 2,
      .branches = 4 + 1,
      .why = "an outline of four edges (3.5 in scenes/polygons.nff), and for one test in twenty its plane; without the "
-            "ray's "
-            "own two divisions, once for all its polygons"},
+            "ray's own two divisions, once for all its polygons"},
     // X - base: 3, to the nearest point: 3 + 3, z: 3, dz: 3, side: 3, dside: 3, radius: 1, dradius: 1, a: 1 + 3,
     // b: 1 + 3, c: 1 + 3, discriminant: 2; a third of the tests goes on: (q, z and t twice, against 0, h and the
     // nearest: 9) / 3, a root and two divisions, as one division. Branches: passes by, and a third of three

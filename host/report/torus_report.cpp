@@ -96,8 +96,7 @@ std::string torus_lines(const TorusReport& t) {
     const TorusTime& m = t.modelled;
     text += fmt::format(
         "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step (modelled "
-        "time "
-        "of T805s)\n",
+        "time of T805s)\n",
         time_text(m.overlapped_ms), time_text(m.processor_ms), time_text(m.compute_ms), time_text(m.messages_ms),
         time_text(m.links_ms), time_text(m.stepwise_ms));
     if (const auto& async = m.asynchronous)

@@ -105,8 +105,8 @@ std::vector<Comparison> comparisons_of(const std::vector<Series>& all, bool from
 std::string finding_of_fall(const Series& most) {
     return fmt::format(
         "1024 objects at 32 divisions, beside 1024: the time of Yoshitani & Yamazaki is {:.1f} times as long, ours "
-        "{:.1f} "
-        "times modelled and {:.1f} times measured; the tests are {:.1f} times as many, beside their \"about 1/5\".",
+        "{:.1f} times modelled and {:.1f} times measured; the tests are {:.1f} times as many, beside their \"about "
+        "1/5\".",
         paper::kDivisionsFall, fall_of(most, kModelled), fall_of(most, kMeasured), fall_of(most, kTests));
 }
 

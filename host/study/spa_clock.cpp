@@ -30,9 +30,8 @@ std::string clock_text() {
     return fmt::format(
         "modelled, one clock: the budget's cycles of 100 ns times {:.2f} ({:.2f} .. {:.2f} by rounding), which is the "
         "filter's factor, 7 ms [D] over what the budget gives it and of no scene; rotations, exchanges and transfers "
-        "at "
-        "the rates of the real machine. Nothing is fitted to a scene. That the factor holds for ray tracing too is an "
-        "assumption: conclusions are shown for factors of 1 to 8.",
+        "at the rates of the real machine. Nothing is fitted to a scene. That the factor holds for ray tracing too is "
+        "an assumption: conclusions are shown for factors of 1 to 8.",
         factor.value, factor.least, factor.most);
 }
 

@@ -106,8 +106,7 @@ std::string queue_of(const SceneOutcomes& scene, std::uint64_t overhead) {
 std::string queue_finding(const std::vector<SceneOutcomes>& scenes, std::uint64_t overhead) {
     return fmt::format(
         "A request takes {} budget cycles ({:.2f} ms). If the root answered them one at a time, as one bus would make "
-        "it, "
-        "they alone would take longer than the run that is shown: {}.",
+        "it, they alone would take longer than the run that is shown: {}.",
         overhead, machine_factor().value * spa_ms(static_cast<double>(overhead)),
         joined(scenes, "; ", [&](const SceneOutcomes& scene) { return queue_of(scene, overhead); }));
 }
