@@ -1,14 +1,17 @@
 // What simgrid_replay tells, and where SimGrid is installed, random histories by it and by raya.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 
 #include "host/files/whole_file.hpp"
 #include "host/study/peer.hpp"
 #include "host/study/simgrid_peer.hpp"
 #include "host/study/studies.hpp"
+#include "host/study/torus_runs.hpp"
 #include "host/torus/simgrid_files.hpp"
 #include "tests/files/scratch_folder.hpp"
 #include "tests/paths.h"
+#include "tests/study/study_cases.hpp"
 #include "tests/torus/random_history.hpp"
 
 namespace raya {
@@ -75,6 +78,30 @@ TEST_CASE("SimGrid delivers the same messages in about the same time", "[study]"
         CHECK(answer.finish_ms >= torus_time(torus, traffic_of(torus, history)).overlapped_ms * (1 - 1e-6));
     }
     CHECK(ours == Approx(theirs).epsilon(0.05));
+}
+
+TEST_CASE("the study's page has each machine with each effect, and its bounds", "[study]") {
+    if (!std::filesystem::exists(replay_program())) {
+        WARN("SimGrid is not installed: tools/setup --studies");
+        return;
+    }
+    Session session(choose_device(""));
+    const StudyPage page = simgrid_page(session, even_scene(8), 16, replay_program());
+    check_page(page);
+    const StudyTable& table = page.table("simgrid");
+    REQUIRE(table.rows.size() == 2 * 2 * 5);
+    const auto at = [&](std::size_t row, const char* label) { return table.at(row, label).number(); };
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        CAPTURE(row);
+        CHECK(std::abs(at(row, "difference")) < 10);  // %: the goal
+        CHECK(at(row, "messages") == at(row / 5 * 5, "messages"));
+        const double before = row % 5 == 0 ? 0 : at(row - 1, "raya");
+        CHECK(at(row, "raya, the effect") == Approx(at(row, "raya") - before).margin(1e-9));
+    }
+    CHECK(page.comparisons.size() == 4);
+    CHECK(page.findings.size() == 2 + 4);
+    REQUIRE(page.plots.size() == 1);
+    CHECK(page.plots[0].series.size() == 2 * 4);
 }
 
 }  // namespace
