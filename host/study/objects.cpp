@@ -97,11 +97,11 @@ StudyPlot time_plot(const Rows& rows, const char* protocol, const char* name, co
 }
 
 std::vector<StudyPlot> plots_of(const ObjectsRuns& all, const Ratios& ratios) {
-    StudyPlot ratio{"objects-ratios", "Random over even, overlapped", "objects", "times as long", Axes::kLogX};
+    StudyPlot ratio{"objects-ratios", "Random over even, without supersteps", "objects", "times as long", Axes::kLogX};
     for (const char* protocol : {kPaperProtocol, kOwnProtocol})
         for (const char* kind : {kRandom, kWithin})
             ratio.series.push_back(line_with_bars(fmt::format("{}, protocol: {}", kind, protocol),
-                                                  of(ratios, kind, protocol), &Ratio::objects, &Ratio::overlapped));
+                                                  of(ratios, kind, protocol), &Ratio::objects, &Ratio::asynchronous));
     StudyPlot depth{"objects-depth", "How deep primary rays go", "objects", "voxels a ray in the box", Axes::kLogX};
     for (const std::string kind : {kEven, kRandom})
         depth.series.push_back(
