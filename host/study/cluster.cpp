@@ -97,11 +97,12 @@ Comparison comparison_of(const Members& members, const Figure<MemberFigure>& fig
 Claim claim_of(const Members& members, const Figure<MemberFigure>& figure) {
     const auto values = each(members, figure.of);
     const int digits = figure.paper < 10 ? 3 : 0;
-    return {paper::kSpa, figure.place,
-            fmt::format("{}: {:.{}f}{}{}.", figure.what, figure.paper, digits, *figure.unit ? " " : "", figure.unit),
-            verdict_among(figure.paper, values),
-            finding("cluster", "among", "scenes"_a = values.size(),
-                    "mean"_a = with_interval(estimate_of(values), digits), "range"_a = range_text(values, digits))};
+    return {
+        paper::kSpa, figure.place,
+        fmt::format("{}: {:.{}f}{}{}.", figure.what, figure.paper, digits, *figure.unit ? " " : "", figure.unit),
+        verdict_among(figure.paper, values),
+        finding("cluster", "among", "scenes"_a = values.size(), "mean"_a = with_interval(estimate_of(values), digits),
+                "prediction"_a = prediction_text(values, digits))};
 }
 
 StudyTable table_of_members(const Members& members) {

@@ -35,9 +35,13 @@ ClaimVerdict verdict_of(bool seen, bool contrary) {
 }
 
 ClaimVerdict verdict_among(double paper, std::span<const double> pictures) {
-    constexpr std::size_t kEnough = 20;
-    const bool among = paper >= std::ranges::min(pictures) && paper <= std::ranges::max(pictures);
-    return verdict_of(among, !among && pictures.size() >= kEnough);
+    const bool among = prediction_of({pictures.begin(), pictures.end()}).holds(paper);
+    return verdict_of(among, !among && pictures.size() >= kPredictable);
+}
+
+std::string prediction_text(std::span<const double> values, int digits) {
+    const Interval range = prediction_of({values.begin(), values.end()});
+    return fmt::format("{:.{}f} .. {:.{}f}", range.least, digits, range.most, digits);
 }
 
 std::string range_text(std::span<const double> values, int digits) {

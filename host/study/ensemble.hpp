@@ -51,11 +51,15 @@ PlotSeries line_with_bars(std::string label, const Rows& rows, X x, Y estimate, 
 /// Reproduced where a claim was seen, not reproduced where its contrary was; it cannot be told where neither was.
 ClaimVerdict verdict_of(bool seen, bool contrary);
 
-/// Of a figure that a paper has for one picture, beside those that many pictures have: reproduced where it lies between
-/// the least and the largest of them. Of fewer than 20 pictures it cannot be told outside.
+/// Of a figure that a paper has for one picture, beside those that many pictures have: reproduced where it lies in
+/// their 95 % prediction interval (prediction_of()), not reproduced outside; of fewer than kPredictable pictures it
+/// cannot be told outside.
 ClaimVerdict verdict_among(double paper, std::span<const double> pictures);
 
-/// "0.084 .. 0.221"
+/// prediction_of() in words: "0.115 .. 0.182"
+std::string prediction_text(std::span<const double> values, int digits = 3);
+
+/// From the least to the largest: "0.084 .. 0.221"
 std::string range_text(std::span<const double> values, int digits = 3);
 
 }  // namespace raya

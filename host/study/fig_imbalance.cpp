@@ -107,7 +107,7 @@ Claim claim_of_draw(const Imbalance& im) {
     return {paper::kSpa, "Fig. 8", "u is 0.118 at p = 16 (derived from Table 3).",
             verdict_among(paper::kImbalance16, im.own().views),
             finding("fig8", "draw", "views"_a = im.views(), "range"_a = range_text(im.own().views),
-                    "mean"_a = with_interval(im.own().mean))};
+                    "prediction"_a = prediction_text(im.own().views), "mean"_a = with_interval(im.own().mean))};
 }
 
 Claim claim_of_gain(const BalancePass& pass, const Imbalance& im) {

@@ -8,6 +8,8 @@
 #include <array>
 #include <string>
 
+#include "host/study/statistics.hpp"
+
 namespace raya {
 
 /// Times a budget cycle, with what the rounding of the printed times allows.
@@ -20,12 +22,6 @@ inline constexpr std::array kFactors = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};
 
 /// What a page says of its clock.
 std::string clock_text();
-
-/// A range that printed figures leave open.
-struct Interval {
-    double least, most;
-    double middle() const { return (least + most) / 2; }
-};
 
 /// What a call of the host takes beside the PEs' computing: set-up, for each rotation its synchronisation and words,
 /// and the words that go through the host. From the printed 2 and 12 ms (Table 4, 2 and 34 rotations) and 140 ms (Table

@@ -1,5 +1,6 @@
 #include "host/study/statistics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -43,6 +44,18 @@ Estimate estimate_of(const std::vector<double>& values, double confidence) {
     const auto n = static_cast<double>(values.size());
     estimate.half_width = student_t(confidence, values.size() - 1) * std::sqrt(squares / (n - 1) / n);
     return estimate;
+}
+
+Interval prediction_of(std::vector<double> values) {
+    constexpr double kTail = 0.025;
+    std::ranges::sort(values);
+    const std::size_t last = values.size() - 1;
+    const double place =
+        std::max(0.0, kTail * static_cast<double>(values.size() + 1) - 1);  // from the least, which is 0
+    const auto whole = std::min(static_cast<std::size_t>(place), last), next = std::min(whole + 1, last);
+    const double part = place - static_cast<double>(whole);
+    return {values[whole] + part * (values[next] - values[whole]),
+            values[last - whole] + part * (values[last - next] - values[last - whole])};
 }
 
 double fitted_exponent(const std::vector<double>& x, const std::vector<double>& y) {

@@ -11,6 +11,8 @@ std::span<const Study> studies() {
         {"table2", "Times of the SPA with 256 PEs and with one, and of this machine", true, study_table2},
         {"table3", "What the 3 x 3 filter costs", true, study_table3},
         {"table4", "What supersampling costs, in both readings of the paper", true, study_table4},
+        {"bus", "What neighbours cost over the ring, over the bus and by broadcasts of PEs, 4 to 256 PEs", true,
+         study_bus},
         {"cluster", "Scenes as heavy as the paper's: its times on one clock, nothing fitted", false, study_cluster},
         {"fig12", "Load of each PE in supersampling", true, study_fig12},
         {"fig13", "Imbalance against the offset p in supersampling", true, study_fig13},

@@ -7,6 +7,7 @@
 
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"
+#include "host/study/ensemble.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/spa_times.hpp"
 #include "host/study/studies.hpp"
@@ -94,6 +95,41 @@ TEST_CASE("what is recommended takes least of all offsets", "[study]") {
                       best("none"), best("filter"), best("supersample")));
 }
 
+TEST_CASE("offsets are chosen by half of the views and judged by the others", "[study]") {
+    constexpr std::uint32_t kSide = 65;
+    Session session(choose_device(""));
+    Laboratory lab(session, kSide);
+    const LabelledScene scene = embedded_scene("spheres");
+    const StudyPage page = study_best_offset(lab, {scene});
+    const StudyTable& table = page.table("best-offset-views");
+    const Ensemble ensemble = ensemble_of(lab, scene, kSide, AntialiasMethod::kSupersample, 40);
+    const double factor = machine_factor().value;
+    std::vector<double> sums(kSide), best, zero;  // 65 PEs, the filter
+    const auto ms_of = [&](std::size_t view) {
+        return each(offset_times(*ensemble.views[view], kSide, AntialiasMethod::kFilter, factor),
+                    &OffsetTime::total_ms);
+    };
+    for (std::size_t view = 0; view < ensemble.views.size(); view += 2) {
+        const auto ms = ms_of(view);
+        for (std::size_t p = 0; p < kSide; ++p) sums[p] += ms[p];
+    }
+    const std::size_t chosen = first_least(sums, kSide);
+    for (std::size_t view = 1; view < ensemble.views.size(); view += 2) {
+        const auto ms = ms_of(view);
+        best.push_back(ms[chosen]);
+        zero.push_back(100 * (ms[0] / ms[chosen] - 1));
+    }
+    CHECK(table.at(1, "anti-aliasing").text() == "filter");
+    CHECK(table.at(1, "best p").number() == static_cast<double>(chosen));
+    CHECK(table.at(1, "best p of 0..sqrt(P)").number() == static_cast<double>(first_least(sums, 9)));
+    CHECK(table.at(1, "time").number() == Approx(estimate_of(best).mean));
+    CHECK(table.at(1, "time, +-").number() == Approx(estimate_of(best).half_width));
+    CHECK(table.at(1, "p = 0 takes longer").number() == Approx(estimate_of(zero).mean));
+    CHECK(table.at(1, "p = 0, +-").number() == Approx(estimate_of(zero).half_width));
+    // 64 PEs and an offset of 64 = n^2: on 65 columns the shear does not come round to the same PEs.
+    CHECK(page.claims[1].verdict == ClaimVerdict::kNotReproduced);
+}
+
 TEST_CASE("rotations make a distant offset dear", "[study]") {
     // Every pixel costs the same: no offset balances better, so with the ring the shortest way is best.
     Costs costs;
@@ -114,6 +150,8 @@ TEST_CASE("best-offset takes the scene's own size, and centre where none is name
     Laboratory small(session, 16);
     const StudyPage page = study_best_offset(small, {});
     check_page(page);
+    REQUIRE(page.claims.size() == 2);
+    CHECK(page.claims[1].verdict == ClaimVerdict::kCannotTell);  // no number of PEs has an offset n^2 below 16
     CHECK(read_back(page.settings)["scenes"][0]["scene"] == "centre");
     CHECK(read_back(page.settings)["scenes"][0]["size"] == 16);
 }

@@ -28,14 +28,18 @@ TEST_CASE("verdicts follow what was seen and its contrary", "[ensemble]") {
     CHECK(verdict_of(false, true) == kNotReproduced);
     CHECK(verdict_of(false, false) == kCannotTell);
     CHECK(verdict_of(true, true) == kCannotTell);
-    std::vector<double> pictures(19, 1.0);
+    std::vector<double> pictures(kPredictable - 1, 1.0);
     pictures[3] = 2;
     CHECK(verdict_among(1.5, pictures) == kReproduced);
     CHECK(verdict_among(2, pictures) == kReproduced);
-    CHECK(verdict_among(2.1, pictures) == kCannotTell);  // 19 pictures
+    CHECK(verdict_among(2.1, pictures) == kCannotTell);
     pictures.push_back(1);
+    CHECK(verdict_among(2, pictures) == kReproduced);  // 39: the least and the largest still
     CHECK(verdict_among(2.1, pictures) == kNotReproduced);
     CHECK(verdict_among(0.9, pictures) == kNotReproduced);
+    for (int i = 0; i < 40; ++i) pictures.push_back(1);
+    CHECK(verdict_among(1.5, pictures) == kNotReproduced);  // 79: the second largest
+    CHECK(verdict_among(1, pictures) == kReproduced);
 }
 
 TEST_CASE("a difference that is there is told, one that is not is mostly not", "[ensemble]") {

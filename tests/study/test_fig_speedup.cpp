@@ -86,10 +86,16 @@ TEST_CASE("fig9 says how ours lies to the paper's 229 times", "[study]") {
         return all;
     };
     using enum ClaimVerdict;
-    CHECK(verdicts({&same, &other}) ==
-          std::vector{kReproduced, kReproduced, kCannotTell});  // 60 is within the interval
-    CHECK(verdicts({&same, &same}) == std::vector{kCannotTell, kCannotTell, kReproduced});
-    CHECK(verdicts({20, &other}) == std::vector{kNotReproduced, kNotReproduced, kNotReproduced});
+    // 229, 99.2, p = 16 above p = 0 (they are equal), 3.86, 60 or more.
+    CHECK(verdicts({&same, &other}) == std::vector{kReproduced, kCannotTell, kNotReproduced, kReproduced,
+                                                   kCannotTell});  // 60 is within the interval
+    CHECK(verdicts({&same, &same}) == std::vector{kCannotTell, kCannotTell, kNotReproduced, kCannotTell, kReproduced});
+    CHECK(verdicts({kPredictable - 1, &other}) ==
+          std::vector{kCannotTell, kCannotTell, kNotReproduced, kCannotTell, kNotReproduced});
+    CHECK(verdicts({kPredictable, &other}) == std::vector(5, kNotReproduced));
+    CostImage hump = same;  // eight columns that are dear
+    for (std::size_t pixel = 0; pixel < hump.cycles.size(); ++pixel) hump.cycles[pixel] = pixel % 256 < 8 ? 10 : 1;
+    CHECK(verdicts({&hump, &hump})[2] == kReproduced);
     CHECK(speedup_page("mine.nff", same, {&same, &other}).claims.empty());
 }
 

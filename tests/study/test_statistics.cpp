@@ -1,12 +1,46 @@
 // Means, their intervals and exponents, against printed tables, hand-made figures and draws of a known distribution.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 #include <random>
+#include <vector>
 
 #include "host/study/statistics.hpp"
 
 namespace raya {
 namespace {
+
+TEST_CASE("one more measurement lies in the prediction with 95 %, whatever the distribution", "[statistics]") {
+    std::mt19937 random(11);
+    std::normal_distribution<double> draw(0, 1);
+    constexpr int kTrials = 4000;
+    for (const bool skew : {false, true})
+        for (const std::size_t count : {39u, 64u, 100u}) {
+            int within = 0;
+            const auto one = [&] { return skew ? std::exp(2 * draw(random)) : draw(random); };
+            for (int i = 0; i < kTrials; ++i) {
+                std::vector<double> values(count);
+                std::ranges::generate(values, one);
+                within += prediction_of(values).holds(one());
+            }
+            CAPTURE(skew, count, within);
+            CHECK(std::abs(within / double(kTrials) - 0.95) < 0.012);  // 3.5 standard deviations
+        }
+}
+
+TEST_CASE("a prediction leaves out a fortieth of the places at either end", "[statistics]") {
+    const auto of = [](std::size_t count) {
+        std::vector<double> values(count);
+        std::iota(values.rbegin(), values.rend(), 1.0);
+        return prediction_of(values);
+    };
+    CHECK((of(39).least == Approx(1) && of(39).most == Approx(39)));
+    CHECK((of(64).least == Approx(1.625) && of(64).most == Approx(63.375)));
+    CHECK((of(79).least == Approx(2) && of(79).most == Approx(78)));
+    CHECK((of(2).least == 1 && of(2).most == 2));
+    CHECK((of(1).least == 1 && of(1).most == 1));
+}
 
 // Two-sided 95 %: any table of Student's t.
 TEST_CASE("Student's t at 95 % is the one in tables", "[statistics]") {

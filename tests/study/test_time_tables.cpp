@@ -57,6 +57,35 @@ TEST_CASE("the host model holds every printed time that rounding allows", "[stud
     CHECK(model.rotation_ms.middle() == Approx(10. / 32));
 }
 
+TEST_CASE("the bus's study has the moves and times of its formulas, and one image for all ways", "[study]") {
+    Session session(choose_device(""));
+    Laboratory lab(session, kSize);
+    const StudyPage page = study_bus(lab, {});
+    check_page(page);
+    const StudyTable& table = page.table("bus");
+    REQUIRE(table.rows.size() == 2 * 7);  // 4, 8 .. 256 PEs; a column for each PE up to 32 of them
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const auto figure = [&](const char* label) { return table.at(row, label).number(); };
+        const double pes = figure("P"), p = figure("p"), share = kSize * kSize / pes;
+        const bool filter = table.at(row, "anti-aliasing").text() == "filter";
+        CAPTURE(pes, p, filter);
+        CHECK(p == std::round(std::sqrt(pes)));
+        if (pes > kSize) continue;
+        const auto ms = [&](double moves) { return moves * rotation_ms(static_cast<std::uint32_t>(share)); };
+        const double broadcasts = (filter ? 4 : 1) * pes, turns = 2 * (std::min(p, pes - p) + 1);
+        CHECK(figure("rotations") == turns);
+        CHECK(figure("transfers") == 4 * pes);
+        CHECK(figure("broadcasts") == broadcasts);
+        CHECK(figure("ring") == Approx(ms(turns)));
+        CHECK(figure("bus") == Approx(ms(4 * pes)));
+        CHECK(figure("broadcasts, time") == Approx(ms(broadcasts)));
+        CHECK(figure("bus, words alone") == Approx(4 * 3 * kSize * kSize / 6e3));
+        CHECK(figure("broadcasts, words alone") == Approx((filter ? 4 : 1) * 3 * kSize * kSize / 6e3));
+        CHECK(figure("broadcasts / ring") == Approx(broadcasts / turns));
+    }
+    CHECK(says(page, "In 14 of 14 cases"));
+}
+
 TEST_CASE("Table 2's modelled figures follow from the cost image and the rates", "[study]") {
     Session session(choose_device(""));
     Laboratory lab(session, kSize);
