@@ -50,7 +50,7 @@ std::optional<Verdict> difference(const Words& expected, const Words& got, const
 
 Verdict check_bus(Session& session) {
     Communication counted;
-    Bus bus(session, counted);
+    Bus bus(session, counted, 1);
     const Words words = numbered(100'003);
     auto everywhere = session.buffer<std::uint32_t>("broadcast words", words.size());
     session.fill("broadcast words", everywhere, kPoison);
@@ -69,7 +69,7 @@ Verdict check_bus(Session& session) {
 // Every PE's block has words of its own in each round, and comes from the middle of its memory.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
-    Bus bus(session, counted);
+    Bus bus(session, counted, static_cast<std::uint32_t>(pes));
     const std::size_t pitch = words + 3, offset = 2;
     auto memory = session.buffer<float>("own words", pes * pitch),
          blocks = session.buffer<float>("blocks", pes * words);
@@ -98,7 +98,7 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
 // PEs, those of the turn before the last would be where these belong.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
-    Ring ring(session, counted, pes, words);
+    Ring ring(session, counted, static_cast<std::uint32_t>(pes), words);
     auto memory = session.buffer<float>("own words", pes * words);
     for (std::uint32_t i = 0; i < 12; ++i) {
         const Words own = numbered(pes * words, i * static_cast<std::uint32_t>(pes * words));
@@ -120,7 +120,8 @@ Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every) {
     constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS;
     const std::uint32_t nodes = raya_nodes(torus), box = (1 + kCapacity) * kWords;
-    LinkExchange links(session, torus, kCapacity, {"verify", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
+    const NodeShare share(torus);
+    LinkExchange links(session, share, kCapacity, {"verify", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
     links.clear();
     NodeStatus status(nodes);
     Words out(links.outboxes().size()), in(out.size()), expected(out.size());

@@ -174,13 +174,13 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
     return found;
 }
 
-cl::Device choose_device(const std::string& name_part) {
+cl::Device choose_device(const std::string& name_part, std::size_t turn) {
     const std::vector<cl::Device> devices = all_devices();
     std::vector<DeviceInfo> infos;
     for (const cl::Device& device : devices) infos.push_back(device_info(device));
     const char* fallback = std::getenv("RAYA_DEVICE");
     const std::string wanted = name_part.empty() && fallback != nullptr ? fallback : name_part;
-    return devices[device_index(wanted, infos)];
+    return devices[device_index(wanted, infos, turn)];
 }
 
 }  // namespace raya

@@ -27,7 +27,8 @@ DeviceInfo device_info(const cl::Device& device);
 std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t turn = 0);
 
 /// The device that `name_part` names, see device_index; where it is empty, the one that the environment variable
-/// RAYA_DEVICE names, if set. Looks at all platforms. DeviceError as in device_index and all_devices.
-cl::Device choose_device(const std::string& name_part);
+/// RAYA_DEVICE names, if set; `turn` as in device_index. Looks at all platforms. DeviceError as in device_index and
+/// all_devices.
+cl::Device choose_device(const std::string& name_part, std::size_t turn = 0);
 
 }  // namespace raya

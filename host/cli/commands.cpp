@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <new>
 #include <string>
@@ -17,17 +18,13 @@
 #include "host/error.hpp"
 #include "host/files/interruption.hpp"
 #include "host/files/say.hpp"
+#include "host/ranks/launch.hpp"
 
 namespace raya {
 namespace {
 
 constexpr int kExitBug = 1;
 constexpr int kExitCheckFailed = 4;
-
-int fail(const std::string& text, int code) {
-    say(fmt::format("raya: {}\n", text));
-    return code;
-}
 
 /// The next files to be opened would be taken for those that are closed. Nothing can be written to a descriptor for
 /// reading, so that what is lost on stdout is seen.
@@ -36,34 +33,77 @@ void open_standard_files() {
         if (::fcntl(descriptor, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) return;
 }
 
-int parse_and_run(CLI::App& program, int argc, char** argv) {
+int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     try {
+        if (ranks.many()) check_alike(ranks, {argv + 1, argv + argc});
         program.parse(argc, argv);
         return kExitOk;
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return program.exit(error);  // help, version
-        return fail(parse_failure_text(program, error, {argv + 1, argv + argc}), kExitUserError);
+        if (error.get_exit_code() != 0)
+            return ranks.fail(parse_failure_text(program, error, {argv + 1, argv + argc}), kExitUserError);
+        return ranks.first() ? program.exit(error) : kExitOk;  // help, version
+    } catch (const RankFailure& failure) {
+        return ranks.fail(failure);
     } catch (const UserError& error) {
-        return fail(error.what(), kExitUserError);
+        return ranks.fail(error.what(), kExitUserError);
     } catch (const DeviceError& error) {
-        return fail(error.what(), kExitDeviceError);
+        return ranks.fail(error.what(), kExitDeviceError);
     } catch (const CheckFailure& failure) {
-        return failure.summary.empty() ? kExitCheckFailed : fail(failure.summary, kExitCheckFailed);
+        return failure.summary.empty() ? kExitCheckFailed : ranks.fail(failure.summary, kExitCheckFailed);
     } catch (const std::bad_alloc&) {
-        return fail("out of memory on the host; remedy: fewer pixels, a smaller scene, or more memory", kExitUserError);
+        return ranks.fail("out of memory on the host; remedy: fewer pixels, a smaller scene, or more memory",
+                          kExitUserError);
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0) return kExitOk;  // it is what could not be printed
-        return fail(std::string("internal error: ") + error.what(), kExitBug);
+        return ranks.fail(std::string("internal error: ") + error.what(), kExitBug);
     }
 }
 
 /// `code`, unless a line that was printed is lost.
-int printed(int code) {
+int printed(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
     const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
-    fail(fmt::format("cannot write to stdout{}; name a place with room for it", reason), kExitUserError);
+    ranks.fail(fmt::format("cannot write to stdout{}; name a place with room for it", reason), kExitUserError);
     return code == kExitOk ? kExitUserError : code;
+}
+
+// Of what ends all ranks one speaks: rank 0, or mpirun, which passes it on as SIGTERM.
+void silence_interruptions(const Ranks& ranks) {
+    if (!ranks.many()) return;
+    end_silently_on(SIGTERM);
+    if (ranks.first()) return;
+    for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) end_silently_on(signal);
+}
+
+// Other commands than render would do the same in every process.
+void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
+    if (!ranks.many()) return;
+    for (CLI::App* command : program.get_subcommands({}))
+        if (command->get_name() != "render")
+            command->preparse_callback([name = command->get_name()](std::size_t) {
+                throw UserError(
+                    fmt::format("{} runs in one process, render in several; remedy: start it without mpirun", name));
+            });
+}
+
+int run_on(Ranks& ranks, int argc, char** argv) {
+    CLI::App program{"raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.",
+                     "raya"};
+    program.require_subcommand(1);
+    program.set_version_flag("--version", "raya " RAYA_VERSION);
+    program.footer(
+        "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's "
+        "own.");
+    add_render_command(program, ranks);
+    add_devices_command(program);
+    add_generate_command(program);
+    add_bench_command(program);
+    add_study_command(program);
+    add_verify_command(program);
+    silence_interruptions(ranks);
+    refuse_many_ranks(program, ranks);
+    return ranks.close(printed(ranks, parse_and_run(program, ranks, argc, argv)));
 }
 
 }  // namespace
@@ -72,20 +112,13 @@ int run_program(int argc, char** argv) {
     open_standard_files();
     end_cleanly_when_interrupted();
     explain_driver_crashes();
-    CLI::App program{"raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.",
-                     "raya"};
-    program.require_subcommand(1);
-    program.set_version_flag("--version", "raya " RAYA_VERSION);
-    program.footer(
-        "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's "
-        "own.");
-    add_render_command(program);
-    add_devices_command(program);
-    add_generate_command(program);
-    add_bench_command(program);
-    add_study_command(program);
-    add_verify_command(program);
-    return printed(parse_and_run(program, argc, argv));
+    try {
+        const std::unique_ptr<Ranks> ranks = open_ranks();
+        return run_on(ranks ? *ranks : Ranks::alone(), argc, argv);
+    } catch (const UserError& error) {  // every process has it, the first says it
+        const std::optional<Launch> launch = launched();
+        return !launch || launch->rank == 0 ? Ranks::alone().fail(error.what(), kExitUserError) : kExitUserError;
+    }
 }
 
 }  // namespace raya

@@ -8,6 +8,8 @@ class App;
 
 namespace raya {
 
+class Ranks;
+
 /// Thrown by a command that has done its work, where what it was asked to check does not hold. What was found is
 /// printed already.
 struct CheckFailure {
@@ -18,7 +20,7 @@ struct CheckFailure {
 /// for trouble with the device, 4 for a check that failed, 1 for a fault of our own. Messages go to stderr.
 int run_program(int argc, char** argv);
 
-void add_render_command(CLI::App& program);
+void add_render_command(CLI::App& program, Ranks& ranks);
 void add_devices_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_bench_command(CLI::App& program);

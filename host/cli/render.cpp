@@ -9,17 +9,17 @@
 namespace raya {
 namespace {
 
-void render(const CLI::App& parsed, const RenderCommand& command) {
+void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) {
     const Machine& machine = machine_named(command.render.machine);
     refuse_options_of_other_machines(parsed, machine);
     check_trace(parsed, command.trace);
-    check_targets(command);
-    machine.kind == MachineKind::kTorus ? render_on_torus(command) : render_on_ring(command);
+    if (ranks.first()) check_targets(command);
+    machine.kind == MachineKind::kTorus ? render_on_torus(command, ranks) : render_on_ring(command, ranks);
 }
 
 }  // namespace
 
-void add_render_command(CLI::App& program) {
+void add_render_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
     const auto options = std::make_shared<RenderCommand>();
     add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
@@ -41,7 +41,7 @@ void add_render_command(CLI::App& program) {
                       "to the device's measured peak (the roofline)");
     add_trace_options(*command, options->trace);
     command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
-    command->callback([command, options] { render(*command, *options); });
+    command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 
 }  // namespace raya

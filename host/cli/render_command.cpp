@@ -58,6 +58,20 @@ void check_targets(const RenderCommand& command) {
     if (!command.report.empty()) check_writable(command.report);
 }
 
+SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks) {
+    SceneInput input;
+    if (ranks.first())
+        input = watch.steps().during("read scene", [&] { return read_scene(options.scene, options.strict); });
+    if (!ranks.many()) return input;
+    const bool ring = machine_named(options.machine).kind == MachineKind::kRing;
+    if (ranks.first() && ring) options.accel = accel_text(ring_settings(options, input.scene).accel);
+    ranks.broadcast(input.scene.name);
+    ranks.broadcast(input.scene.view.width);
+    ranks.broadcast(input.scene.view.height);
+    ranks.broadcast(options.accel);
+    return input;
+}
+
 void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = watch.builds();

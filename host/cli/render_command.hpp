@@ -8,6 +8,7 @@
 #include "host/cli/scene_input.hpp"
 #include "host/cli/torus_options.hpp"
 #include "host/image/image_io.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
 
 namespace raya {
@@ -20,9 +21,13 @@ struct RenderCommand {
     bool profile = false, quiet = false;
 };
 
-/// Renders on a ring machine, on the torus machine, and writes what was asked for.
-void render_on_ring(const RenderCommand& command);
-void render_on_torus(const RenderCommand& command);
+/// Renders on a ring machine, on the torus machine, and writes what was asked for: in rank 0, where there are several.
+void render_on_ring(const RenderCommand& command, Ranks& ranks);
+void render_on_torus(const RenderCommand& command, Ranks& ranks);
+
+/// The scene, which rank 0 alone reads. Elsewhere it has a name and a resolution, and no object; `options` name what
+/// rank 0 would choose from what it has read.
+SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks);
 
 /// Refuses files that could not be written, or that are named twice. UserError.
 void check_targets(const RenderCommand& command);

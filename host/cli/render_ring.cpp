@@ -81,25 +81,26 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 }  // namespace
 
-void render_on_ring(const RenderCommand& command) {
+void render_on_ring(const RenderCommand& command, Ranks& ranks) {
     RenderWatch watch(command.trace, command.profile);
-    std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
-    SceneInput input =
-        watch.steps().during("read scene", [&] { return read_scene(command.render.scene, command.render.strict); });
+    std::optional<ProgressBar> bar(std::in_place, !command.quiet && ranks.first(), "reading the scene");
+    RenderOptions options = command.render;
+    SceneInput input = read_scene_once(watch, options, ranks);
     const Scene& scene = input.scene;
-    RingSettings settings = ring_settings(command.render, scene);
+    RingSettings settings = ring_settings(options, scene);
     settings.keep_costs = !command.cost.empty();
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     bar->stage("preparing");
     const cl::Device device =
-        watch.steps().during("choose device", [&] { return choose_device(command.render.device); });
+        watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
     Session session = watch.steps().during("open device", [&] { return Session(device); });
     watch.observe(session);
-    RingRenderer renderer(session, scene, settings);
-    warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
+    RingRenderer renderer(session, scene, settings, ranks);
+    if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     bar->stage("rendering");
     const RingResult result =
         renderer.render(bar->active() ? [&](double done) { bar->update(done); } : ProgressCallback{});
+    if (!ranks.first()) return;
     bar->stage("writing");
 
     RenderReport report = make_report(command, input, settings, session.device(), result);

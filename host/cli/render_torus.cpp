@@ -111,20 +111,22 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
 
 }  // namespace
 
-void render_on_torus(const RenderCommand& command) {
+void render_on_torus(const RenderCommand& command, Ranks& ranks) {
     RenderWatch watch(command.trace, command.profile);
-    std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
-    SceneInput input =
-        watch.steps().during("read scene", [&] { return read_scene(command.render.scene, command.render.strict); });
+    std::optional<ProgressBar> bar(std::in_place, !command.quiet && ranks.first(), "reading the scene");
+    RenderOptions options = command.render;
+    SceneInput input = read_scene_once(watch, options, ranks);
     const Scene& scene = input.scene;
-    const TorusSettings settings = torus_settings(command.render, command.torus, scene);
+    const TorusSettings settings = torus_settings(options, command.torus, scene);
+    if (ranks.many() && settings.history)
+        throw UserError("--async and --replay follow every packet of all nodes; start raya without mpirun for them");
     bar->stage("preparing");
     const cl::Device device =
-        watch.steps().during("choose device", [&] { return choose_device(command.render.device); });
+        watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
     Session session = watch.steps().during("open device", [&] { return Session(device); });
     watch.observe(session);
-    TorusRenderer renderer(session, scene, settings);
-    warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
+    TorusRenderer renderer(session, scene, settings, ranks);
+    if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     std::optional<PacketTrace> packets;
     std::optional<TorusTrace> trace;
     std::optional<HistoryRecorder> history;
@@ -134,6 +136,7 @@ void render_on_torus(const RenderCommand& command) {
     const TorusResult result = render_to_its_end(
         renderer, *bar, {packets ? &*packets : nullptr, trace ? &*trace : nullptr, history ? &*history : nullptr});
 
+    if (!ranks.first()) return;
     bar->stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     if (history) {

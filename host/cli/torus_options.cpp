@@ -96,15 +96,15 @@ constexpr std::array<Foreign, 11> kOfRings = {
 constexpr const char* kNoNodes =
     "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
 constexpr std::array<Foreign, 10> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
-                                              {"--voxels", kNoNodes},
-                                              {"--links", kNoNodes},
-                                              {"--inject", kNoNodes},
-                                              {"--returns", kNoNodes},
-                                              {"--packet-words", kNoNodes},
-                                              {"--queue", kNoNodes},
-                                              {"--packets", kNoNodes},
-                                              {"--replay", kNoNodes},
-                                              {"--async", kNoNodes}}};
+                                               {"--voxels", kNoNodes},
+                                               {"--links", kNoNodes},
+                                               {"--inject", kNoNodes},
+                                               {"--returns", kNoNodes},
+                                               {"--packet-words", kNoNodes},
+                                               {"--queue", kNoNodes},
+                                               {"--packets", kNoNodes},
+                                               {"--replay", kNoNodes},
+                                               {"--async", kNoNodes}}};
 
 }  // namespace
 

@@ -19,6 +19,7 @@ struct Slot {
 };
 std::array<Slot, 16> slots;
 static_assert(std::atomic<bool>::is_always_lock_free);
+std::array<std::atomic<bool>, 32> silent;  // by signal
 
 /// Runs in whatever thread the signal finds; calls nothing but what a handler may call.
 extern "C" void remove_and_end(int signal) {
@@ -26,7 +27,8 @@ extern "C" void remove_and_end(int signal) {
     static constexpr char kMessage[] = "\r\033[Kraya: interrupted\n";
     constexpr std::size_t kClear = 4;  // wipes a progress bar off the line, on a terminal
     const std::size_t skipped = ::isatty(STDERR_FILENO) != 0 ? 0 : kClear;
-    if (::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) ::_exit(128 + signal);
+    const bool speaks = !silent[static_cast<std::size_t>(signal)].load();
+    if (speaks && ::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) ::_exit(128 + signal);
     ::raise(signal);  // SA_RESETHAND: what the signal does by itself, so that the caller sees why the program ended
 }
 
@@ -49,6 +51,8 @@ void remove_files_in_progress() {
 void end_cleanly_when_interrupted() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) handle(signal);
 }
+
+void end_silently_on(int signal) { silent.at(static_cast<std::size_t>(signal)).store(true); }
 
 FileInProgress::FileInProgress(const std::filesystem::path& path) {
     // Where the handler runs the working folder is the same: raya never changes it.

@@ -12,6 +12,9 @@ void remove_files_in_progress();
 /// so.
 void end_cleanly_when_interrupted();
 
+/// From now on that signal ends the process without a word: of several processes that get it one speaks, or who sent it.
+void end_silently_on(int signal);
+
 /// A file that must not outlive the process unless it is finished: known to the handler while this object lives. Does
 /// not remove the file itself. A process has few at a time; one beyond the 16th is left to itself.
 class FileInProgress {

@@ -42,7 +42,7 @@ struct PacketCharge {
     bool return_a_ray = false;  // one return for each ray that is no shadow ray, when its shadow rays are done
 
     static constexpr std::uint32_t kWholeReturnWords = 6;
-    std::uint32_t return_words() const { return return_a_ray ? kWholeReturnWords : RAYA_RETURN_WORDS; }
+    std::uint32_t return_words() const { return return_a_ray ? kWholeReturnWords : std::uint32_t{RAYA_RETURN_WORDS}; }
     std::uint32_t words_of(Makes made) const;
 };
 

@@ -6,6 +6,7 @@
 
 #include "host/cl/commands.hpp"
 #include "host/machine/communication.hpp"
+#include "host/ring/pe_segment.hpp"
 
 namespace raya {
 
@@ -16,44 +17,38 @@ struct PeWords {
     std::size_t at() const { return pe * pitch + offset; }
 };
 
+/// PEs are numbers of the whole ring. Of several ranks all make the same transfers, `counted` is of all of them, and a
+/// buffer has the PEs of the rank's own segment.
 class Bus {
   public:
-    Bus(Session& session, Communication& counted) : session_(session), counted_(counted) {}
+    Bus(Session& session, Communication& counted, std::uint32_t pes, Ranks& ranks = Ranks::alone())
+        : session_(session), counted_(counted), ranks_(ranks), pes_(pes), here_(own_segment(pes, ranks)) {}
 
     /// The same words to every PE. `to` is what all PEs take into their memories when they start.
-    void broadcast(Buffer<std::uint32_t>& to, std::span<const std::uint32_t> words) {
-        session_.write("bus.broadcast", to, words);
-        counted_.broadcasts += 1;
-        counted_.broadcast_words += words.size();
-    }
+    void broadcast(Buffer<std::uint32_t>& to, std::span<const std::uint32_t> words);
 
     /// `words` of one PE to another, between buffers that are not the same.
-    void send(const Buffer<float>& own, PeWords from, Buffer<float>& blocks, PeWords to, std::size_t words) {
-        session_.copy("bus.send", own, from.at(), blocks, to.at(), words);
-        counted_.transfers += 1;
-        counted_.transfer_words += words;
-    }
+    void send(const Buffer<float>& own, PeWords from, Buffer<float>& blocks, PeWords to, std::size_t words);
 
-    /// `words` of one PE to every other. `heard` is what all PEs listen to: it lies on the device once, the words of
-    /// each PE that spoke in its place.
-    void broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& heard, PeWords to, std::size_t words) {
-        session_.copy("bus.broadcast_from", own, from.at(), heard, to.at(), words);
-        counted_.pe_broadcasts += 1;
-        counted_.pe_broadcast_words += words;
-    }
+    /// `words` of one PE to every other. `heard` is what all PEs listen to: it lies on each device once, the words of
+    /// every PE of the ring that spoke in its place.
+    void broadcast_from(const Buffer<float>& own, PeWords from, Buffer<float>& heard, PeWords to, std::size_t words);
 
     /// All PEs hand over what their memories hold: one gather of the machine, in one part or more.
     void begin_gather() { counted_.gathers += 1; }
 
-    /// A part of the blocks of all PEs to the host. `words` of it are pixels; the rest is empty.
-    void gather(const Buffer<float>& blocks, std::span<float> to, std::uint64_t words) {
-        session_.read("bus.gather", blocks, to);
-        counted_.gather_words += words;
-    }
+    /// A part of the blocks of all PEs to the host; to that of their rank, where there are several. `words` of it are
+    /// pixels, those of all PEs; the rest is empty.
+    void gather(const Buffer<float>& blocks, std::span<float> to, std::uint64_t words);
 
   private:
+    std::size_t place(const PeWords& words) const;  // in a buffer of this rank's PEs
+
     Session& session_;
     Communication& counted_;
+    Ranks& ranks_;
+    std::uint32_t pes_;
+    PeSegment here_;
 };
 
 }  // namespace raya

@@ -6,7 +6,7 @@ RingContrast::RingContrast(Kernels& kernels, const ExchangeSetup& setup, float t
     : setup_(setup),
       threshold_(threshold),
       mark_contrasts_(kernels.get<MarkContrastsKernel>()),
-      marks_(setup.session.buffer<std::uint8_t>("marks", std::size_t{setup.pes} * setup.capacity)) {
+      marks_(setup.session.buffer<std::uint8_t>("marks", std::size_t{setup.pes.count} * setup.capacity)) {
     Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
     mark_contrasts("warm-up", {none, RAYA_LEFT, 0, 0}, 0, 0, none);
 }
@@ -20,9 +20,10 @@ void RingContrast::apply(const Buffer<float>& pixels, NeighbourExchange& exchang
 
 void RingContrast::mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band,
                                   std::uint32_t capacity, const Buffer<float>& pixels) {
-    setup_.session.launch(label, mark_contrasts_, setup_.pes, setup_.group_size, setup_.broadcast,
+    setup_.session.launch(label, mark_contrasts_, setup_.pes.count, setup_.group_size, setup_.broadcast,
                           Uint<"side">{arrival.side}, Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin},
-                          Uint<"band">{band}, Uint<"capacity">{capacity}, threshold_, arrival.blocks, pixels, marks_);
+                          Uint<"band">{band}, Uint<"capacity">{capacity}, Uint<"first_pe">{setup_.pes.first},
+                          threshold_, arrival.blocks, pixels, marks_);
 }
 
 }  // namespace raya

@@ -8,8 +8,8 @@ namespace raya {
 
 using MarkContrastsKernel =
     DescribedKernel<"ring/contrast.cl", "mark_contrasts", const Buffer<std::uint32_t>&, Uint<"side">, Uint<"distance">,
-                    Uint<"begin">, Uint<"band">, Uint<"capacity">, cl_float, const Buffer<float>&, const Buffer<float>&,
-                    Buffer<std::uint8_t>&>;
+                    Uint<"begin">, Uint<"band">, Uint<"capacity">, Uint<"first_pe">, cl_float, const Buffer<float>&,
+                    const Buffer<float>&, Buffer<std::uint8_t>&>;
 
 class RingContrast {
   public:

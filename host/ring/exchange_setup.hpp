@@ -3,14 +3,15 @@
 #include <cstdint>
 
 #include "host/cl/commands.hpp"
+#include "host/ring/pe_segment.hpp"
 
 namespace raya {
 
 struct ExchangeSetup {
     Session& session;
     Buffer<std::uint32_t> broadcast;  // the job's words
-    std::uint32_t pes = 0;
-    std::uint32_t capacity = 0;  // pixels in the memory of each PE
+    PeSegment pes;                    // on the device
+    std::uint32_t capacity = 0;       // pixels in the memory of each PE
     std::uint32_t group_size = 1;
 };
 

@@ -8,19 +8,19 @@ RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
     : setup_(setup),
       add_neighbours_(kernels.get<AddNeighboursKernel>()),
       take_means_(kernels.get<TakeMeansKernel>()),
-      sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes * setup.capacity)) {
+      sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes.count * setup.capacity)) {
     Buffer<float> none = setup.session.buffer<float>("no blocks", 3);
     add_neighbours("warm-up", {none, RAYA_LEFT, 0, 0}, 0, 0);
-    setup.session.launch("warm-up", take_means_, setup.pes, setup.group_size, setup.broadcast, Uint<"capacity">{0},
-                         sums_);
+    setup.session.launch("warm-up", take_means_, setup.pes.count, setup.group_size, setup.broadcast,
+                         Uint<"capacity">{0}, Uint<"first_pe">{0}, sums_);
 }
 
 void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
     const StepLog::Step step = setup_.session.step("filter");
     sum_line(pixels, exchange, "filter.sum_rows", RAYA_LEFT, RAYA_RIGHT);
     sum_line(pixels, exchange, "filter.sum_columns", RAYA_ABOVE, RAYA_BELOW);
-    setup_.session.launch("filter.take_means", take_means_, setup_.pes, setup_.group_size, setup_.broadcast,
-                          Uint<"capacity">{setup_.capacity}, pixels);
+    setup_.session.launch("filter.take_means", take_means_, setup_.pes.count, setup_.group_size, setup_.broadcast,
+                          Uint<"capacity">{setup_.capacity}, Uint<"first_pe">{setup_.pes.first}, pixels);
 }
 
 // pixels = (pixels + those on the first side) + those on the second side: an order, so one side is brought after the
@@ -37,9 +37,10 @@ void RingFilter::sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, co
 
 void RingFilter::add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band,
                                 std::uint32_t capacity) {
-    setup_.session.launch(label, add_neighbours_, setup_.pes, setup_.group_size, setup_.broadcast,
+    setup_.session.launch(label, add_neighbours_, setup_.pes.count, setup_.group_size, setup_.broadcast,
                           Uint<"side">{arrival.side}, Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin},
-                          Uint<"band">{band}, Uint<"capacity">{capacity}, arrival.blocks, sums_);
+                          Uint<"band">{band}, Uint<"capacity">{capacity}, Uint<"first_pe">{setup_.pes.first},
+                          arrival.blocks, sums_);
 }
 
 }  // namespace raya

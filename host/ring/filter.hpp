@@ -6,11 +6,11 @@
 
 namespace raya {
 
-using AddNeighboursKernel =
-    DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&, Uint<"side">, Uint<"distance">,
-                    Uint<"begin">, Uint<"band">, Uint<"capacity">, const Buffer<float>&, Buffer<float>&>;
-using TakeMeansKernel =
-    DescribedKernel<"ring/filter.cl", "take_means", const Buffer<std::uint32_t>&, Uint<"capacity">, Buffer<float>&>;
+using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&,
+                                            Uint<"side">, Uint<"distance">, Uint<"begin">, Uint<"band">,
+                                            Uint<"capacity">, Uint<"first_pe">, const Buffer<float>&, Buffer<float>&>;
+using TakeMeansKernel = DescribedKernel<"ring/filter.cl", "take_means", const Buffer<std::uint32_t>&, Uint<"capacity">,
+                                        Uint<"first_pe">, Buffer<float>&>;
 
 class RingFilter {
   public:

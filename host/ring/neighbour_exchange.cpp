@@ -10,16 +10,16 @@ constexpr std::size_t kPixelWords = 3;
 }  // namespace
 
 NeighbourExchange::NeighbourExchange(Session& session, Communication& counted, const raya_mapping& mapping,
-                                     std::uint32_t capacity, std::uint32_t band, ExchangeWay way)
+                                     std::uint32_t capacity, std::uint32_t band, ExchangeWay way, Ranks& ranks)
     : pes_(mapping.pes),
       capacity_(capacity),
       band_(band),
       way_(way),
-      ring_(session, counted, mapping.pes, kPixelWords * band),
-      bus_(session, counted) {
+      ring_(session, counted, mapping.pes, kPixelWords * band, ranks),
+      bus_(session, counted, mapping.pes, ranks) {
     for (raya_u32 side = 0; side < RAYA_SIDES; ++side) distances_[side] = neighbour_distances(mapping, side);
     if (way == ExchangeWay::kBroadcast)
-        heard_ = session.buffer<float>("blocks that were broadcast", ring_.blocks().size());
+        heard_ = session.buffer<float>("blocks that were broadcast", std::size_t{pes_} * kPixelWords * band);
 }
 
 void NeighbourExchange::visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides, const Arrived& arrived) {

@@ -27,13 +27,13 @@ class NeighbourExchange {
   public:
     /// `capacity`: pixels in each PE's memory; `band`: 1..capacity.
     NeighbourExchange(Session& session, Communication& counted, const raya_mapping& mapping, std::uint32_t capacity,
-                      std::uint32_t band, ExchangeWay way = ExchangeWay::kRing);
+                      std::uint32_t band, ExchangeWay way = ExchangeWay::kRing, Ranks& ranks = Ranks::alone());
 
     std::uint32_t band() const { return band_; }
 
-    /// Brings the pixels of all PEs, `own` as [PE][capacity][3], to the PEs whose neighbours on `sides` they are, and
-    /// calls `arrived` for each block in which some PE finds some. Of several sides none is first: whoever needs an
-    /// order asks for them one by one.
+    /// Brings the pixels of all PEs, `own` as [PE][capacity][3] of those of this rank, to the PEs whose neighbours on
+    /// `sides` they are, and calls `arrived` for each block in which some PE finds some. Of several sides none is
+    /// first: whoever needs an order asks for them one by one.
     void visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides,
                const std::function<void(const Arrival&)>& arrived);
 
@@ -52,8 +52,8 @@ class NeighbourExchange {
     std::array<std::vector<std::uint32_t>, RAYA_SIDES> distances_;
     Ring ring_;
     Bus bus_;
-    std::optional<Buffer<float>> heard_;  // [PE][band][3], of broadcasts; a PE needs one block, as it takes what it
-                                          // needs of each while it passes
+    std::optional<Buffer<float>> heard_;  // [PE][band][3], of broadcasts of all PEs; a PE needs one block, as it takes
+                                          // what it needs of each while it passes
 };
 
 }  // namespace raya

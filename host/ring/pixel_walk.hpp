@@ -10,16 +10,17 @@
 
 namespace raya {
 
-/// Calls `move` for each pixel of a range of every PE's share, with its number in the device's layout [PE][window] and
-/// in the image. Some PEs at a time, a run of each: where neighbours own neighbouring columns, what is near in the image
-/// is moved together.
+/// Calls `move` for each pixel of a range of the share of every PE of a segment, with its number in the layout
+/// [PE][window] of the segment's device and in the image. Some PEs at a time, a run of each: where neighbours own
+/// neighbouring columns, what is near in the image is moved together.
 template <class Move>
-void for_each_pixel(const raya_mapping& m, PixelRange range, std::uint32_t window, Move&& move) {
+void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, std::uint32_t window,
+                    Move&& move) {
     constexpr std::uint32_t kTogether = 16;
-    for (std::uint32_t first = 0; first < m.pes; first += kTogether) {
-        const std::uint32_t pes = std::min(kTogether, m.pes - first);
+    for (std::uint32_t first = 0; first < segment.count; first += kTogether) {
+        const std::uint32_t pes = std::min(kTogether, segment.count - first);
         std::array<raya_share, kTogether> shares{};
-        for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, first + i);
+        for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, segment.first + first + i);
         std::uint32_t pixels = 0;
         for (std::uint32_t k = range.begin; k < range.end; k += pixels) {
             std::array<raya_pixel_run, kTogether> runs{};

@@ -1,10 +1,13 @@
-// The ring: every PE hands a block of words to its neighbour, all at once, as counted, labelled buffer copies.
+// The ring: every PE hands a block of words to its neighbour, all at once, as counted, labelled buffer copies; where
+// the ring goes on at another rank, the block of the PE at the border goes there.
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "host/cl/commands.hpp"
 #include "host/machine/communication.hpp"
+#include "host/ring/pe_segment.hpp"
 #include "host/ring/route.hpp"
 
 namespace raya {
@@ -13,8 +16,10 @@ namespace raya {
 /// overlap itself; a PE of the machine sends and receives word by word and needs one.
 class Ring {
   public:
-    /// `pes` blocks of `block_words` words each, both > 0; what they hold at first is undefined.
-    Ring(Session& session, Communication& counted, std::size_t pes, std::size_t block_words);
+    /// `pes` blocks of `block_words` words each, both > 0, of which those of this rank's segment lie on the device;
+    /// what they hold at first is undefined. `counted` is of all ranks.
+    Ring(Session& session, Communication& counted, std::uint32_t pes, std::size_t block_words,
+         Ranks& ranks = Ranks::alone());
 
     /// Copies words `begin` and on of each PE's own memory, [PE][own_words], into its block: as many as fit or exist.
     /// No transfer between PEs, so it is not counted.
@@ -24,20 +29,27 @@ class Ring {
     void rotate(Turn turn);
 
     /// No transfer of the ring's: PE i takes the block of PE (i + distance) mod P out of `heard`, [PE][block_words],
-    /// which all PEs have heard over the bus.
-    void take(const Buffer<float>& heard, std::size_t distance) { shift("ring.take", heard, front_, distance); }
+    /// which all PEs have heard over the bus: those of all ranks.
+    void take(const Buffer<float>& heard, std::size_t distance);
 
-    /// The block that each PE holds now, [PE][block_words].
+    /// The block that each PE of the segment holds now, [PE][block_words].
     Buffer<float>& blocks() { return front_; }
 
   private:
-    /// The one way in which blocks of all PEs move: PE i of `to` gets the block of PE (i + distance) mod P of `from`.
-    void shift(const char* label, const Buffer<float>& from, Buffer<float>& to, std::size_t distance);
+    void turn_here(Turn turn);
+    void leave(Turn turn);
+    void arrive(Turn turn);
+    /// Copies blocks, numbers in blocks.
+    void move(const char* label, const Buffer<float>& from, std::size_t first, Buffer<float>& to, std::size_t at,
+              std::size_t blocks);
 
     Session& session_;
     Communication& counted_;
+    Ranks& ranks_;
+    PeSegment here_;
     std::size_t pes_, block_words_;
     Buffer<float> front_, back_;
+    std::vector<float> leaves_, comes_;  // a block each, on its way to another rank and from one
 };
 
 }  // namespace raya

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 
-#include "host/accel/grid.hpp"
-#include "host/accel/tree_words.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/pixel_walk.hpp"
@@ -20,26 +19,12 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
-    const StepLog::Step step = session.step("pack scene");
-    PackedJob job = pack_job(scene, job_settings(settings, scale));
-    raya_job on_ring = job.header();
-    on_ring.mapping = settings.mapping;
-    job.set_header(on_ring);
-    return job;
-}
-
-// What every PE holds of the scene.
-RingJob ring_job(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
-    RingJob all{packed(session, scene, settings, scale), {}, 0};
-    if (settings.accel.kind == AccelKind::kNone) return all;
-    const StepLog::Step step = session.step("divide scene");
-    const Clock::time_point start = Clock::now();
-    all.accel = settings.accel.kind == AccelKind::kBvh
-                    ? append_tree(all.job, settings.format)
-                    : append_grid(all.job, accel_partition(all.job, settings.format, settings.accel));
-    all.accel_s = seconds_since(start);
-    return all;
+PeSegment segment_here(const raya_mapping& m, const Ranks& ranks) {
+    if (m.pes < ranks.count())
+        throw UserError(fmt::format(
+            "{} ranks for {} PEs: a rank has one PE at least; start {} ranks or fewer, or take more PEs (--pes)",
+            ranks.count(), m.pes, m.pes));
+    return own_segment(m.pes, ranks);
 }
 
 Image black(const raya_mapping& m) {
@@ -48,17 +33,21 @@ Image black(const raya_mapping& m) {
 }
 
 // Of large images the device holds a part of what the PEs' memories do, so that it and the host need not hold all
-// pixels twice. What goes round the ring lies there as a whole.
-std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings) {
+// pixels twice. What goes round the ring lies there as a whole. It is the same in all ranks.
+std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings, std::uint32_t ranks) {
     if (settings.antialias.method != AntialiasMethod::kNone) return memory.block_pixels;
-    const std::uint64_t most = std::max<std::uint64_t>(1, settings.device_pixels / settings.mapping.pes);
+    const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // of the rank that has most
+    const std::uint64_t most = std::max<std::uint64_t>(1, settings.device_pixels / pes);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, most));
 }
 
 // Each pixel has one primary ray, counted when its lane takes it. Some devices end long loops early and say nothing
 // (Mesa's llvmpipe after 65,535 turns of a work-item); the pixels that they leave out would be wrong.
-void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const DeviceInfo& device) {
-    const std::uint64_t pixels = std::uint64_t{m.width} * m.height, traced = first_pass[RAYA_PRIMARY];
+void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const PeSegment& pes,
+                      const DeviceInfo& device) {
+    std::uint64_t pixels = 0;
+    for (std::uint32_t i = 0; i < pes.count; ++i) pixels += raya_share_size(raya_share_of(m, pes.first + i));
+    const std::uint64_t traced = first_pass[RAYA_PRIMARY];
     if (traced == pixels) return;
     throw DeviceError(
         fmt::format("{} {} ended the trace kernel after {} of {} pixels; remedy: see what raya verify finds; more PEs "
@@ -66,37 +55,46 @@ void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, cons
                     device.platform, device.name, traced, pixels));
 }
 
+// The events of all ranks, added to both.
+void add_events(const std::vector<EventCounts>& of_ranks, EventCounts& phase, EventCounts& all) {
+    for (const EventCounts& events : of_ranks)
+        for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+            phase[event] += events[event];
+            all[event] += events[event];
+        }
+}
+
 }  // namespace
 
-RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings)
+RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks)
     : session_(session),
+      ranks_(ranks),
       settings_(checked(settings, session.device())),
-      scale_(length_scale(scene, settings_.format)),
-      job_(ring_job(session, scene, settings_, scale_)),
+      pes_(segment_here(settings_.mapping, ranks)),
+      job_(make_ring_job(session, scene, settings_, ranks)),
       share_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, {.scene = scene.name,
                                                  .job_words = job_.job.words().size(),
                                                  .bounces = settings_.bounces,
                                                  .share = share_,
                                                  .antialias = settings_.antialias.method})),
-      window_(device_window(memory_, settings_)),
-      bus_(session, communication_),
+      window_(device_window(memory_, settings_, ranks.count())),
+      bus_(session, communication_, settings_.mapping.pes, ranks),
       broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.job.words().size())),
-      pixels_(session.buffer<float>("pixel blocks", 3ull * settings_.mapping.pes * window_)),
+      pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count * window_)),
       marks_(session.buffer<std::uint8_t>("no marks", 1)) {
-    build(scene);
+    ranks_.one_first_on_each_host([this] { build(); });
 }
 
-void RingRenderer::build(const Scene& scene) {
+void RingRenderer::build() {
     const StepLog::Step building = session_.step("set up device");
     const Clock::time_point start = Clock::now();
     const KernelOptions options = kernel_options(settings_, job_.job, job_.accel, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
-        kernels, settings_.mapping.pes, window_,
+        kernels, pes_, window_,
         slices(settings_,
-               settings_.accel.kind != AccelKind::kNone ? std::min<std::size_t>(20, scene.object_count())
-                                                        : scene.object_count(),
+               settings_.accel.kind != AccelKind::kNone ? std::min<std::size_t>(20, job_.objects) : job_.objects,
                options.lanes * options.group_size, window_));
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.job.words());
@@ -112,11 +110,11 @@ void RingRenderer::build_exchange(KernelOptions options) {
     Kernels kernels(session_, options, settings_.kernels.sources);
     const ExchangeSetup setup{.session = session_,
                               .broadcast = broadcast_,
-                              .pes = settings_.mapping.pes,
+                              .pes = pes_,
                               .capacity = memory_.block_pixels,
                               .group_size = options.group_size};
     exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
-                                                    memory_.band_pixels, settings_.antialias.exchange);
+                                                    memory_.band_pixels, settings_.antialias.exchange, ranks_);
     if (settings_.antialias.method == AntialiasMethod::kFilter) {
         filter_ = std::make_unique<RingFilter>(kernels, setup);
         return;
@@ -138,7 +136,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     place_gathered(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
-    if (settings_.dynamic) simulate_schedule(result);
+    if (settings_.dynamic && ranks_.first()) simulate_schedule(result);
     result.render_s = seconds_since(start);
     gathered_ = {};
     describe(result);
@@ -163,7 +161,7 @@ void RingRenderer::prepare(RingResult& result) {
     const StepLog::Step step = session_.step("prepare");
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
     std::optional<CostImage> none;
-    if (keeps_costs())
+    if (keeps_costs() && ranks_.first())
         none = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
     if (counters_.size() > 1) result.all.kept_cost = none;
     for (PassCounters& counters : counters_) {
@@ -193,28 +191,50 @@ void RingRenderer::supersample(const ProgressCallback& progress) {
                    pixels_, counters_[1], progress ? report : ProgressCallback{});
 }
 
+// What each rank's PEs hold, so many elements a PE, comes to rank 0, which takes it rank by rank.
+template <class T, class Take>
+void RingRenderer::bring(std::vector<T>& own, std::size_t of_pe, const Take& take) {
+    if (!ranks_.first()) return ranks_.send(0, std::span<const T>(own));
+    take(pes_, own);
+    for (std::uint32_t rank = 1; rank < ranks_.count(); ++rank) {
+        const PeSegment pes = segment_of(settings_.mapping.pes, ranks_.count(), rank);
+        own.resize(of_pe * pes.count);
+        ranks_.receive(rank, std::span(own));
+        take(pes, own);
+    }
+}
+
 void RingRenderer::gather(PixelRange range, RingResult& result) {
     const StepLog::Step step = session_.step("gather");
     const raya_mapping& m = settings_.mapping;
     session_.flush();  // the device traces while the host takes memory, whose first use is slow, or places pixels
-    if (result.image.rgb.empty()) result.image = black(m);
+    if (result.image.rgb.empty() && ranks_.first()) result.image = black(m);
     place_gathered(result);
     gathered_.resize(pixels_.size());
-    gathered_range_ = range;
     std::uint64_t owned = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
         owned += share > range.begin ? std::min(share, range.end) - range.begin : 0;
     }
     bus_.gather(pixels_, gathered_, 3 * owned);
+    if (ranks_.many())
+        bring(gathered_, std::size_t{3} * window_,
+              [&](const PeSegment& pes, std::span<const float> pixels) { place(pes, range, pixels, result); });
+    else
+        gathered_range_ = range;
 }
 
 void RingRenderer::place_gathered(RingResult& result) {
-    for_each_pixel(settings_.mapping, gathered_range_, window_, [&](std::size_t from, std::size_t to) {
-        std::copy_n(gathered_.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
+    place(pes_, gathered_range_, gathered_, result);
+    gathered_range_ = {};
+}
+
+void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const float> pixels,
+                         RingResult& result) const {
+    for_each_pixel(settings_.mapping, pes, range, window_, [&](std::size_t from, std::size_t to) {
+        std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
                     result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
     });
-    gathered_range_ = {};
 }
 
 // What the kernels counted is read by the host to be reported: no transfer of the machine.
@@ -224,21 +244,26 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
-        for_each_pixel(settings_.mapping, range, window_, [&](std::size_t from, std::size_t to) {
-            result.phases[i].kept_cost->cycles[to] = cycles[from];
-            if (counters_.size() > 1) result.all.kept_cost->cycles[to] += cycles[from];
+        bring(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
+            for_each_pixel(settings_.mapping, pes, range, window_, [&](std::size_t from, std::size_t to) {
+                result.phases[i].kept_cost->cycles[to] = counted[from];
+                if (counters_.size() > 1) result.all.kept_cost->cycles[to] += counted[from];
+            });
         });
     }
 }
 
 void RingRenderer::collect_marks(RingResult& result) {
     const StepLog::Step step = session_.step("collect marks");
-    result.mask = black(settings_.mapping);
+    if (ranks_.first()) result.mask = black(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
-    for_each_pixel(settings_.mapping, {0, 0, share_}, window_, [&](std::size_t from, std::size_t to) {
-        result.recomputed += marks[from];
-        std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3, static_cast<float>(marks[from]));
+    bring(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> marked) {
+        for_each_pixel(settings_.mapping, pes, {0, 0, share_}, window_, [&](std::size_t from, std::size_t to) {
+            result.recomputed += marked[from];
+            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3,
+                        static_cast<float>(marked[from]));
+        });
     });
 }
 
@@ -247,19 +272,23 @@ void RingRenderer::collect_events(RingResult& result) {
     const auto cycles = cycles_of_events();
     std::vector<std::uint64_t> all(settings_.mapping.pes);
     for (std::size_t i = 0; i < counters_.size(); ++i) {
-        std::vector<std::uint64_t> counted(counters_[i].events.size()), loads(all.size());
+        std::vector<std::uint64_t> counted(counters_[i].events.size()), loads(pes_.count), of_all;
         session_.read("read counters", counters_[i].events, counted);
+        EventCounts events{};
         for (std::size_t n = 0; n < counted.size(); ++n) {
             const std::size_t event = n % RAYA_EVENTS, pe = n / RAYA_EVENTS / settings_.kernels.group_size;
-            result.phases[i].events[event] += counted[n];
-            result.all.events[event] += counted[n];
+            events[event] += counted[n];
             loads[pe] += cycles[event] * counted[n];
-            all[pe] += cycles[event] * counted[n];
         }
-        result.phases[i].load = load_of(std::move(loads));
+        if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
+        add_events(ranks_.all_gather(events), result.phases[i].events, result.all.events);
+        bring(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> of_rank) {
+            of_all.insert(of_all.end(), of_rank.begin(), of_rank.end());
+        });
+        std::transform(of_all.begin(), of_all.end(), all.begin(), all.begin(), std::plus<>());
+        if (ranks_.first()) result.phases[i].load = load_of(std::move(of_all));
     }
-    result.all.load = load_of(std::move(all));
-    check_all_traced(result.phases.front().events, settings_.mapping, session_.device());
+    if (ranks_.first()) result.all.load = load_of(std::move(all));
 }
 
 // Work-groups run to their end, so what a PE takes while the machine runs cannot be seen on a device; but it follows
@@ -273,7 +302,7 @@ void RingRenderer::simulate_schedule(RingResult& result) {
 
 void RingRenderer::describe(RingResult& result) {
     result.all.name = "all";
-    result.scale = scale_;
+    result.scale = job_.scale;
     result.communication = communication_;
     result.pe_memory = memory_;
     if (settings_.accel.kind != AccelKind::kNone) result.accel = job_.accel;

@@ -2,12 +2,14 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "host/ring/bus.hpp"
 #include "host/ring/contrast.hpp"
 #include "host/ring/filter.hpp"
 #include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/ring_job.hpp"
 #include "host/ring/ring_result.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/ring/tracer.hpp"
@@ -17,28 +19,23 @@
 
 namespace raya {
 
-/// A job, and what was made of the grid or tree behind it.
-struct RingJob {
-    PackedJob job;
-    AccelSummary accel;
-    double accel_s = 0;  // measured: to make it
-};
-
 class RingRenderer {
   public:
-    /// Packs the scene, checks that it fits the machine's PEs, builds the kernels and takes the device memory.
-    /// Throws UserError (what does not fit, what is out of range), DeviceError.
-    RingRenderer(Session& session, const Scene& scene, const RingSettings& settings);
+    /// Packs the scene, checks that it fits the machine's PEs, builds the kernels and takes the device memory for the
+    /// PEs of this rank. Only rank 0 looks at the scene. Throws UserError (what does not fit, what is out of range,
+    /// more ranks than PEs), DeviceError.
+    RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::alone());
 
-    /// One image. May be called again: the pixels are the same, the times are those of this call.
+    /// One image. May be called again: the pixels are the same, the times are those of this call. In other ranks than 0
+    /// the result is of this rank alone, and has no image.
     RingResult render(const ProgressCallback& progress = {});
 
     /// By what the scene's lengths are multiplied.
-    const LengthScale& scale() const { return scale_; }
+    const LengthScale& scale() const { return job_.scale; }
 
   private:
     bool keeps_costs() const { return settings_.keep_costs || settings_.dynamic.has_value(); }
-    void build(const Scene& scene);
+    void build();
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
     void render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress);
@@ -46,6 +43,9 @@ class RingRenderer {
     void supersample(const ProgressCallback& progress);
     void gather(PixelRange range, RingResult& result);
     void place_gathered(RingResult& result);
+    void place(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;
+    template <class T, class Take>
+    void bring(std::vector<T>& own, std::size_t of_pe, const Take& take);
     void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
@@ -53,8 +53,9 @@ class RingRenderer {
     void describe(RingResult& result);
 
     Session& session_;
+    Ranks& ranks_;
     RingSettings settings_;  // lanes and group size chosen
-    LengthScale scale_;
+    PeSegment pes_;          // of this rank
     RingJob job_;
     std::uint32_t share_ = 0;  // pixels of the PE that owns most
     PeMemory memory_;
@@ -64,7 +65,7 @@ class RingRenderer {
     Bus bus_;
     double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;
-    Buffer<float> pixels_;         // [PE][block_pixels][3]
+    Buffer<float> pixels_;         // [PE][window][3]
     std::vector<float> gathered_;  // on their way from there into the image: those of a range
     PixelRange gathered_range_;
     Buffer<std::uint8_t> marks_;  // what the first pass is given in place of marks

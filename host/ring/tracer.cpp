@@ -18,7 +18,7 @@ std::uint32_t next_slice(const LaunchSlices& slices, std::uint32_t slice, double
 
 }  // namespace
 
-Tracer::Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const LaunchSlices& slices)
+Tracer::Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, const LaunchSlices& slices)
     : session_(kernels.session()),
       options_(kernels.options()),
       pes_(pes),
@@ -28,8 +28,9 @@ Tracer::Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, cons
       kernel_(kernels.get<TraceKernel>()) {}
 
 PassCounters Tracer::make_counters(const std::string& pass) const {
-    return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, std::size_t{pes_} * capacity_),
-            session_.buffer<std::uint64_t>("events of " + pass, std::size_t{pes_} * options_.group_size * RAYA_EVENTS)};
+    return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, std::size_t{pes_.count} * capacity_),
+            session_.buffer<std::uint64_t>("events of " + pass,
+                                           std::size_t{pes_.count} * options_.group_size * RAYA_EVENTS)};
 }
 
 void Tracer::clear(PassCounters& counters) {
@@ -60,10 +61,10 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
 void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                     const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters) {
     const LocalMemory<std::uint32_t> memory{1 + (options_.words_local ? job.size() : 0)};
-    session_.launch(label, kernel_, pes_, options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
+    session_.launch(label, kernel_, pes_.count, options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
                     Uint<"block">{range.block}, Uint<"capacity">{capacity_}, Uint<"begin">{range.begin},
-                    Uint<"end">{range.end}, Uint<"points">{points}, marks, memory, pixels, counters.cycles,
-                    counters.events);
+                    Uint<"end">{range.end}, Uint<"points">{points}, Uint<"first_pe">{pes_.first}, marks, memory, pixels,
+                    counters.cycles, counters.events);
 }
 
 }  // namespace raya

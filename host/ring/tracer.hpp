@@ -8,6 +8,7 @@
 #include "host/files/progress.hpp"
 #include "host/kernels/kernels.hpp"
 #include "host/ring/antialias.hpp"
+#include "host/ring/pe_segment.hpp"
 #include "host/scene/packer.hpp"
 
 namespace raya {
@@ -29,15 +30,15 @@ struct LaunchSlices {
     std::uint32_t first = 0, least = 0, most = 0;
 };
 
-using TraceKernel =
-    DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">, Uint<"block">,
-                    Uint<"capacity">, Uint<"begin">, Uint<"end">, Uint<"points">, const Buffer<std::uint8_t>&,
-                    LocalMemory<std::uint32_t>, Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
+using TraceKernel = DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">,
+                                    Uint<"block">, Uint<"capacity">, Uint<"begin">, Uint<"end">, Uint<"points">,
+                                    Uint<"first_pe">, const Buffer<std::uint8_t>&, LocalMemory<std::uint32_t>,
+                                    Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&>;
 
 class Tracer {
   public:
-    /// `capacity`: pixels in the memory of each PE.
-    Tracer(Kernels& kernels, std::uint32_t pes, std::uint32_t capacity, const LaunchSlices& slices);
+    /// `pes` are on the device; `capacity`: pixels in the memory of each PE.
+    Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, const LaunchSlices& slices);
 
     /// Counters of a pass, all 0.
     PassCounters make_counters(const std::string& pass) const;
@@ -62,7 +63,8 @@ class Tracer {
 
     Session& session_;
     KernelOptions options_;
-    std::uint32_t pes_, capacity_;
+    PeSegment pes_;
+    std::uint32_t capacity_;
     LaunchSlices slices_;
     std::string build_options_;
     TraceKernel kernel_;

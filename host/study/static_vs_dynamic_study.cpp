@@ -1,7 +1,6 @@
 // The study of static against dynamic distribution: its tables, plots and verdicts.
 #include "host/scene/generate.hpp"
 #include "host/study/ensemble.hpp"
-#include "host/study/over_bound.hpp"
 #include "host/study/paper.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/spa_clock.hpp"
@@ -12,7 +11,6 @@ namespace raya {
 namespace {
 
 constexpr const char* kName = "static-vs-dynamic";
-constexpr std::size_t kViews = 8;
 constexpr std::uint32_t kFewest = 128, kMost = 16'384;  // PEs; the claim speaks of 128 and more
 
 // A strategy on one scene, or the bound of all.
@@ -101,17 +99,7 @@ StudyPlot efficiency_plot(const SceneOutcomes& scene, std::size_t number, bool f
 struct AtFactor {
     double factor;
     std::uint64_t overhead;
-    Verdict verdict;                    // of the scenes' own pictures
-    std::vector<OverBound> views = {};  // of each scene and number of PEs
-
-    std::size_t count(bool (OverBound::*is)() const) const {
-        return static_cast<std::size_t>(std::ranges::count_if(views, is));
-    }
-    std::size_t static_far() const { return count(&OverBound::static_far); }
-    std::size_t static_near() const { return count(&OverBound::static_near); }
-    std::size_t hybrid_near() const { return count(&OverBound::hybrid_near); }
-    std::size_t hybrid_far() const { return count(&OverBound::hybrid_far); }
-    std::size_t hybrid_beats() const { return count(&OverBound::hybrid_beats); }
+    Verdict verdict;
 };
 
 StudyTable table_of_factors(const std::vector<AtFactor>& factors) {
@@ -122,73 +110,26 @@ StudyTable table_of_factors(const std::vector<AtFactor>& factors) {
          {"cases", [](const AtFactor& row) { return row.verdict.cases; }},
          {"no static one near the bound", [](const AtFactor& row) { return row.verdict.static_inadequate; }},
          {"hybrid near the bound", [](const AtFactor& row) { return row.verdict.hybrid_optimal; }},
-         {"hybrid beats all static ones", [](const AtFactor& row) { return row.verdict.hybrid_beats; }},
-         {"views: no static one near", &AtFactor::static_far},
-         {"views: a static one near", &AtFactor::static_near},
-         {"views: hybrid near", &AtFactor::hybrid_near},
-         {"views: hybrid not near", &AtFactor::hybrid_far},
-         {"views: hybrid beats all static ones", &AtFactor::hybrid_beats}});
-}
-
-StudyTable table_of_views(const std::vector<OverBound>& views) {
-    const auto mean = [](Estimate OverBound::*of) { return [=](const OverBound& row) { return (row.*of).mean; }; };
-    const auto half = [](Estimate OverBound::*of) {
-        return [=](const OverBound& row) { return (row.*of).half_width; };
-    };
-    return table_of(std::string(kName) + "-views",
-                    "Best static strategy and best hybrid over the lower bound, mean of the views", views,
-                    {{"scene", &OverBound::label},
-                     {"P", &OverBound::pes},
-                     {"views", [](const OverBound& row) { return row.fixed.count; }},
-                     {"static", mean(&OverBound::fixed)},
-                     {"static, +-", half(&OverBound::fixed)},
-                     {"hybrid", mean(&OverBound::hybrid)},
-                     {"hybrid, +-", half(&OverBound::hybrid)},
-                     {"hybrid saves", mean(&OverBound::saved), "%"},
-                     {"saves, +-", half(&OverBound::saved), "%"}});
-}
-
-StudyPlot plot_of_views(const std::vector<OverBound>& views) {
-    StudyPlot plot{std::string(kName) + "-views", "Best static strategy and best hybrid, mean of the views", "PEs",
-                   "makespan / lower bound", Axes::kLogX};
-    for (const std::string& label : distinct(views, &OverBound::label)) {
-        const auto rows = where(views, [&](const OverBound& row) { return row.label == label; });
-        plot.series.push_back(line_with_bars(label + ", static", rows, &OverBound::pes, &OverBound::fixed));
-        plot.series.push_back(line_with_bars(label + ", hybrid", rows, &OverBound::pes, &OverBound::hybrid));
-    }
-    return plot;
+         {"hybrid beats all static ones", [](const AtFactor& row) { return row.verdict.hybrid_beats; }}});
 }
 
 std::vector<Claim> claims_of(const std::vector<AtFactor>& factors) {
-    using Count = std::size_t (AtFactor::*)() const;
-    const auto in = [&](Count count) {
+    const auto in = [&](std::size_t Verdict::*count) {
         return joined(factors, ", ", [&](const AtFactor& row) {
-            return fmt::format("{} of {} by the factor {:.2f}", (row.*count)(), row.views.size(), row.factor);
+            return fmt::format("{} of {} by the factor {:.2f}", row.verdict.*count, row.verdict.cases, row.factor);
         });
     };
-    const auto in_all = [&](Count count) {
-        return std::ranges::all_of(factors, [&](const AtFactor& row) { return (row.*count)() == row.views.size(); });
+    const auto verdict = [&](std::size_t Verdict::*count) {
+        return verdict_of(
+            std::ranges::all_of(factors, [&](const AtFactor& row) { return row.verdict.*count == row.verdict.cases; }),
+            std::ranges::all_of(factors, [&](const AtFactor& row) { return row.verdict.*count == 0; }));
     };
     return {{paper::kDynamic, "conclusions", "Static strategies are inadequate on 128 computers or more.",
-             verdict_of(in_all(&AtFactor::static_far), in_all(&AtFactor::static_near)),
-             finding(kName, "static", "far"_a = in(&AtFactor::static_far), "near"_a = in(&AtFactor::static_near))},
+             verdict(&Verdict::static_inadequate),
+             fmt::format("No static one ends within 10 % of the lower bound in {}.", in(&Verdict::static_inadequate))},
             {paper::kDynamic, "conclusions", "Static plus dynamic distribution is nearly optimal.",
-             verdict_of(in_all(&AtFactor::hybrid_near), in_all(&AtFactor::hybrid_far)),
-             finding(kName, "hybrid", "near"_a = in(&AtFactor::hybrid_near), "far"_a = in(&AtFactor::hybrid_far),
-                     "beats"_a = in(&AtFactor::hybrid_beats))}};
-}
-
-void add_views(std::vector<AtFactor>& factors, Laboratory& lab, const Scenes& scenes, std::uint32_t size,
-               const std::vector<std::uint32_t>& pes) {
-    const auto overheads = each(factors, &AtFactor::overhead);
-    for (const LabelledScene& scene : scenes) {
-        const Ensemble ensemble = ensemble_of(lab, scene, size, AntialiasMethod::kNone, kViews);
-        const auto pictures = each(ensemble.views, [](const Costs* costs) { return &costs->trace; });
-        for (const std::uint32_t p : pes) {
-            const auto all = over_bound_of(scene.label, pictures, p, overheads);
-            for (std::size_t i = 0; i < factors.size(); ++i) factors[i].views.push_back(all[i]);
-        }
-    }
+             verdict(&Verdict::hybrid_optimal),
+             fmt::format("A hybrid, requests paid for, ends within 10 % of it in {}.", in(&Verdict::hybrid_optimal))}};
 }
 
 }  // namespace
@@ -211,25 +152,20 @@ StudyPage study_static_vs_dynamic(Laboratory& lab, const Scenes& given) {
     std::vector<AtFactor> factors = {{factor, overhead, verdict_of(scenes)}};
     for (const double other : {kFactors.front(), kFactors.back()})
         factors.push_back({other, overhead_of(other), verdict_of(outcomes_by(overhead_of(other)))});
-    add_views(factors, lab, given.empty() ? own : given, size, pes);
-    const std::vector<OverBound> views = factors.front().views;
     std::ranges::sort(factors, {}, &AtFactor::factor);
     StudyPage page = page_about(kName, {{"size", size},
                                         {"pes", pes},
                                         {"factor", factor},
                                         {"request_cycles", overhead},
                                         {"random_seed", 1},
-                                        {"views", kViews},
                                         {"scenes", each(scenes, &SceneOutcomes::label)}});
     page.clock = clock_text();
     page.claims = claims_of(factors);
     page.findings = dynamic_findings(scenes, overhead);
     page.tables = tables_of(scenes);
-    page.tables.insert(page.tables.begin(), table_of_views(views));
     page.tables.push_back(table_of_factors(factors));
     for (std::size_t i = 0; i < scenes.size(); ++i)
         for (const bool fixed : {true, false}) page.plots.push_back(efficiency_plot(scenes[i], i + 1, fixed));
-    page.plots.push_back(plot_of_views(views));
     page.news = {sentence(kName, "news")};
     return page;
 }

@@ -138,22 +138,22 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
     return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, most));
 }
 
-bool device_holds(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceInfo& device) {
+bool device_holds(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceMemory& memory) {
     const std::uint64_t queues = kPacketBytes * nodes * buffers.queue;
     const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + buffers.box);
     const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
-    return std::max(queues, boxes) <= device.max_allocation_bytes && all <= device.global_memory_bytes;
+    return std::max(queues, boxes) <= memory.one_buffer && all <= memory.all;
 }
 
 void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
-                         const DeviceInfo& device) {
-    if (device_holds(buffers, nodes, device)) return;
+                         const std::string& device, const DeviceMemory& memory) {
+    if (device_holds(buffers, nodes, memory)) return;
     std::uint32_t queue = buffers.queue;
-    while (queue > 1 && !device_holds(buffers_for(queue), nodes, device)) queue /= 2;
+    while (queue > 1 && !device_holds(buffers_for(queue), nodes, memory)) queue /= 2;
     throw UserError(
         fmt::format("{}: queues of {} packets and their boxes in {} nodes do not fit into {}; use --queue {} or "
                     "fewer nodes",
-                    scene, buffers.queue, nodes, device.name, queue));
+                    scene, buffers.queue, nodes, device, queue));
 }
 
 }  // namespace raya

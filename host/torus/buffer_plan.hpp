@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "host/cl/device_info.hpp"
 #include "host/machine/does_not_fit.hpp"
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/node_memory.hpp"
@@ -32,11 +31,16 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t fewest,
                          const NodeTrial& trial = {});
 
-/// Whether the device can hold the queues and boxes of all nodes.
-bool device_holds(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceInfo& device);
+/// What a device holds, in bytes.
+struct DeviceMemory {
+    std::uint64_t all = 0, one_buffer = 0;
+};
+
+/// Whether a device can hold the queues and boxes of that many nodes.
+bool device_holds(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceMemory& memory);
 
 /// UserError where it cannot; it names the longest queue that it can.
 void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
-                         const DeviceInfo& device);
+                         const std::string& device, const DeviceMemory& memory);
 
 }  // namespace raya

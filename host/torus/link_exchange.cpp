@@ -19,26 +19,28 @@ raya_head head_at(const std::uint32_t* packet) {
 
 std::string link_name(std::uint32_t link) { return std::string(link % 2 == 0 ? "+" : "-") + "xyz"[link / 2]; }
 
-LinkExchange::LinkExchange(Session& session, const raya_torus& torus, std::uint32_t capacity, const Cargo& cargo)
+LinkExchange::LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity, const Cargo& cargo)
     : session_(session),
-      torus_(torus),
-      nodes_(raya_nodes(torus)),
+      share_(share),
+      torus_(share.torus()),
+      nodes_(share.nodes()),
       capacity_(capacity),
       cargo_(cargo),
-      outboxes_(session.buffer<std::uint32_t>("outboxes", box_at(RAYA_LINKS, 0))),
-      inboxes_(session.buffer<std::uint32_t>("inboxes", outboxes_.size())),
-      sent_(session.buffer<std::uint32_t>("sent boxes", std::size_t{RAYA_LINKS} * nodes_)) {}
+      outboxes_(session.buffer<std::uint32_t>("outboxes", outbox_at(RAYA_LINKS, 0))),
+      inboxes_(session.buffer<std::uint32_t>("inboxes", inbox_at(RAYA_LINKS, 0))),
+      sent_(session.buffer<std::uint32_t>("sent boxes", std::size_t{RAYA_LINKS} * share.inboxes())) {}
 
 void LinkExchange::clear() {
-    sent_flags_.assign(sent_.size(), 0);
+    const std::size_t outboxes = std::size_t{RAYA_LINKS} * nodes_;
+    sent_flags_.assign(outboxes, 0);
     flags_there_ = sent_flags_;
     session_.fill("clear boxes", sent_, 0);
     // Only the word that says how many packets a box holds: boxes are large, and most of their pages are never touched.
-    for (Buffer<std::uint32_t>* boxes : {&inboxes_, &outboxes_})
-        session_.copy_blocks("clear boxes", sent_, {.pitch = 1}, *boxes, {.pitch = box_words(capacity_)}, 1,
-                             sent_.size());
-    visited_.assign(sent_.size(), 0);
-    packets_.assign(sent_.size(), 0);
+    const Session::Blocks zeros{.pitch = 1}, boxes{.pitch = box_words(capacity_)};
+    session_.copy_blocks("clear boxes", sent_, zeros, inboxes_, boxes, 1, sent_.size());
+    session_.copy_blocks("clear boxes", sent_, zeros, outboxes_, boxes, 1, outboxes);
+    visited_.assign(outboxes, 0);
+    packets_.assign(std::size_t{RAYA_LINKS} * raya_nodes(torus_), 0);
     moved_ = 0;
 }
 
@@ -46,22 +48,21 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
     std::fill(sent_flags_.begin(), sent_flags_.end(), 0);
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         if (torus_.sides[link / 2] == 1) continue;
-        for (std::uint32_t node = 0; node < nodes_; ++node) {
+        for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
             const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
             if (packets == 0 || waits(status, link, node)) continue;
-            sent_flags_[std::size_t{link} * nodes_ + node] = 1;
+            if (share_.has(node)) sent_flags_[std::size_t{link} * nodes_ + share_.slot_of(node)] = 1;
             const std::uint64_t messages = cargo_.charged_status ? status.at(node, *cargo_.charged_status) : packets;
             packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
             words[std::size_t{node} * RAYA_LINKS + link] += messages * cargo_.charged_words;
             moved_ += packets;
         }
-        const Session::Blocks boxes{.pitch = box_words(capacity_)};
-        for (const Span& span : spans(status, link)) {
-            Session::Blocks at = boxes;
-            at.first = box_at(link, span.first);
-            session_.copy_blocks(cargo_.label + " " + link_name(link), outboxes_, at, inboxes_, at,
-                                 box_words(span.packets), span.end - span.first);
-        }
+        const std::size_t pitch = box_words(capacity_);
+        for (const Span& span : spans(status, link))
+            session_.copy_blocks(cargo_.label + " " + link_name(link), outboxes_,
+                                 {.pitch = pitch, .first = outbox_at(link, span.first)}, inboxes_,
+                                 {.pitch = pitch, .first = inbox_at(link, span.first)}, box_words(span.packets),
+                                 span.end - span.first);
     }
     if (sent_flags_ == flags_there_) return;
     session_.write(cargo_.label, sent_, sent_flags_);
@@ -72,6 +73,63 @@ bool LinkExchange::waits(const NodeStatus& status, std::uint32_t link, std::uint
     return status.at(raya_link_end(torus_, node, link), cargo_.inbox_status + link) > 0;
 }
 
+bool LinkExchange::leads_away(std::uint32_t link, std::uint32_t node) const {
+    return share_.rank_of(raya_link_end(torus_, node, link)) != share_.rank_of(node);
+}
+
+LinkExchange::Face& LinkExchange::face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const {
+    for (Face& f : faces)
+        if (f.rank == rank && f.link == link) return f;
+    return faces.emplace_back(Face{rank, link, {}, {}, {}});
+}
+
+// Both ends of a face see from the status how many packets there are in each of its boxes.
+void LinkExchange::leave(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in) {
+    leaving_.clear();
+    coming_.clear();
+    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+        for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
+            const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
+            const std::uint32_t end = raya_link_end(torus_, node, link);
+            if (packets == 0 || share_.has(node) == share_.has(end) || waits(status, link, node)) continue;
+            Face& f = share_.has(node) ? face(leaving_, share_.rank_of(end), link)
+                                       : face(coming_, share_.rank_of(node), link);
+            f.nodes.push_back(node);
+            f.packets.push_back(packets);
+            f.words.resize(f.words.size() + box_words(packets));
+        }
+    const auto tag = [&](const Face& f) {
+        return cargo_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(f.link);
+    };
+    for (Face& f : leaving_) {
+        read_face(f);
+        out.push_back({f.rank, tag(f), std::as_bytes(std::span(f.words))});
+    }
+    for (Face& f : coming_) in.push_back({f.rank, tag(f), std::as_writable_bytes(std::span(f.words))});
+}
+
+void LinkExchange::read_face(Face& f) {
+    std::span<std::uint32_t> to = f.words;
+    for (std::size_t i = 0; i < f.nodes.size(); ++i) {
+        const std::size_t words = box_words(f.packets[i]);
+        session_.read(cargo_.label + " leaves", outboxes_, to.first(words),
+                      outbox_at(f.link, share_.slot_of(f.nodes[i])));
+        to = to.subspan(words);
+    }
+}
+
+void LinkExchange::arrive() {
+    for (const Face& f : coming_) {
+        std::span<const std::uint32_t> from = f.words;
+        for (std::size_t i = 0; i < f.nodes.size(); ++i) {
+            const std::size_t words = box_words(f.packets[i]);
+            session_.write(cargo_.label + " arrives", inboxes_, from.first(words),
+                           inbox_at(f.link, share_.inbox(f.link, f.nodes[i])));
+            from = from.subspan(words);
+        }
+    }
+}
+
 std::uint64_t LinkExchange::cost(const Span& span) const {
     return kCommandBytes + (span.end - span.first) * box_words(span.packets) * sizeof(std::uint32_t);
 }
@@ -80,16 +138,17 @@ std::uint64_t LinkExchange::cost(const Span& span) const {
 std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, std::uint32_t link) const {
     std::vector<Span> found;
     bool closed = true;
-    for (std::uint32_t node = 0; node < nodes_; ++node) {
-        if (waits(status, link, node)) {
+    for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
+        const std::uint32_t node = share_.own()[slot];
+        if (leads_away(link, node) || waits(status, link, node)) {
             closed = true;
             continue;
         }
         const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
         if (packets == 0) continue;
-        const Span alone{node, node + 1, packets};
+        const Span alone{slot, slot + 1, packets};
         if (!closed) {
-            const Span longer{found.back().first, node + 1, std::max(found.back().packets, packets)};
+            const Span longer{found.back().first, slot + 1, std::max(found.back().packets, packets)};
             if (cost(longer) <= cost(found.back()) + cost(alone)) {
                 found.back() = longer;
                 continue;
@@ -103,15 +162,16 @@ std::vector<LinkExchange::Span> LinkExchange::spans(const NodeStatus& status, st
 
 void LinkExchange::visit_new(const NodeStatus& status,
                              const std::function<void(std::uint32_t, const raya_head&)>& visit) {
-    for (std::uint32_t node = 0; node < nodes_; ++node) {
+    for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
+        const std::uint32_t node = share_.own()[slot];
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
-            const std::size_t box = std::size_t{link} * nodes_ + node;
+            const std::size_t box = std::size_t{link} * nodes_ + slot;
             const std::uint32_t first = sent_flags_[box] ? 0 : visited_[box];
             visited_[box] = packets;
             if (!visit) continue;
             std::vector<std::uint32_t> words(std::size_t{packets - first} * cargo_.packet_words);
-            session_.read("record", outboxes_, words, box_at(link, node) + box_words(first));
+            session_.read("record", outboxes_, words, outbox_at(link, slot) + box_words(first));
             for (std::size_t i = 0; i < words.size(); i += cargo_.packet_words) visit(node, head_at(&words[i]));
         }
     }

@@ -1,4 +1,5 @@
-// The links of the torus: what nodes have put into their outboxes is copied into the inboxes of their neighbours.
+// The links of the torus: what nodes have put into their outboxes is copied into the inboxes of their neighbours, or
+// sent there where these are on another rank.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -7,6 +8,8 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/ranks/transport.hpp"
+#include "host/torus/node_share.hpp"
 #include "host/torus/node_status.hpp"
 #include "kernels/shared/traffic.h"
 
@@ -18,17 +21,18 @@ std::string link_name(std::uint32_t link);
 class LinkExchange {
   public:
     /// What the boxes are for: packets of so many words; where a node's status has its boxes' counts; the labels' first
-    /// word. What the model charges: words of a message, and where the status has how many of the outbox's packets are
-    /// messages, if not all are.
+    /// word, and what tells its messages from those of other cargo. What the model charges: words of a message, and
+    /// where the status has how many of the outbox's packets are messages, if not all are.
     struct Cargo {
         std::string label;
         std::uint32_t packet_words, outbox_status, inbox_status;
         std::uint32_t charged_words = packet_words;
         std::optional<std::uint32_t> charged_status = {};
+        int tag = 0;
     };
 
-    /// Boxes of `capacity` packets for every link of every node (kernels/shared/traffic.h).
-    LinkExchange(Session& session, const raya_torus& torus, std::uint32_t capacity, const Cargo& cargo);
+    /// Boxes of `capacity` packets for every link of the nodes that are here (kernels/shared/traffic.h).
+    LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity, const Cargo& cargo);
 
     /// All inboxes are empty, nothing has been sent.
     void clear();
@@ -37,11 +41,17 @@ class LinkExchange {
     /// +x" and so on. The links of one direction are one command, or several where boxes between must wait or differ so
     /// much in length that copying as much of each as the longest needs would take longer. Adds the words that each
     /// link is charged for to `words`, [node][link].
+    /// `status` and `words` are of all nodes, as what packets() and moved() say is; copied is what stays on the device.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
+
+    /// What goes over links that lead to other ranks, or come from there, in one exchange(): adds the messages that
+    /// carry it to `out` and `in`. When they are through, arrive() puts it into the inboxes.
+    void leave(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in);
+    void arrive();
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
     Buffer<std::uint32_t>& inboxes() { return inboxes_; }
-    const Buffer<std::uint32_t>& sent() const { return sent_; }  // [link][node]: 1 where an outbox was copied
+    const Buffer<std::uint32_t>& sent() const { return sent_; }  // [link][node]: 1 where an outbox was copied or sent
 
     /// [node][link], since clear(): messages sent.
     const std::vector<std::uint64_t>& packets() const { return packets_; }
@@ -49,13 +59,13 @@ class LinkExchange {
     /// Since clear(): packets sent over all links, messages or not.
     std::uint64_t moved() const { return moved_; }
 
-    /// Calls `visit`, if there is one, with node and head of every packet that was put into an outbox since the last
-    /// call.
+    /// Calls `visit`, if there is one, with node and head of every packet that was put into an outbox here since the
+    /// last call.
     void visit_new(const NodeStatus& status,
                    const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
 
   private:
-    /// Boxes of neighbouring numbers that one command copies: the links of nodes `first` .. `end` - 1, as far as
+    /// Boxes of neighbouring slots that one command copies: the links of nodes in `first` .. `end` - 1, as far as
     /// `packets` reach.
     struct Span {
         std::uint32_t first, end, packets;
@@ -63,19 +73,35 @@ class LinkExchange {
     std::vector<Span> spans(const NodeStatus& status, std::uint32_t link) const;
     std::uint64_t cost(const Span& span) const;  // in bytes that could be copied in its time
     bool waits(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;  // the inbox is not empty
+    bool leads_away(std::uint32_t link, std::uint32_t node) const;                       // to another rank than its own
+
+    /// The boxes of one link that go from one rank to another, one after another as far as they are filled.
+    struct Face {
+        std::uint32_t rank = 0, link = 0;
+        std::vector<std::uint32_t> nodes;  // where the links start, ascending
+        std::vector<std::uint32_t> packets;
+        std::vector<std::uint32_t> words;
+    };
+    Face& face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const;
+    void read_face(Face& face);
 
     Session& session_;
-    raya_torus torus_;
-    std::uint32_t nodes_, capacity_;
+    const NodeShare& share_;
+    const raya_torus torus_;
+    std::uint32_t nodes_, capacity_;  // nodes: on this device
     Cargo cargo_;
     Buffer<std::uint32_t> outboxes_, inboxes_, sent_;
     std::vector<std::uint32_t> sent_flags_, flags_there_;  // what is to be, and what is, in sent_
     std::vector<std::uint32_t> visited_;  // [link][node]: packets of the outbox that visit_new() has shown
     std::vector<std::uint64_t> packets_;
     std::uint64_t moved_ = 0;
+    std::vector<Face> leaving_, coming_;
     std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * cargo_.packet_words; }
-    std::size_t box_at(std::uint32_t link, std::uint32_t node) const {
-        return raya_box_at(link, nodes_, node, capacity_, cargo_.packet_words);
+    std::size_t outbox_at(std::uint32_t link, std::uint32_t slot) const {
+        return raya_box_at(link, nodes_, slot, capacity_, cargo_.packet_words);
+    }
+    std::size_t inbox_at(std::uint32_t link, std::uint32_t inbox) const {
+        return raya_box_at(link, share_.inboxes(), inbox, capacity_, cargo_.packet_words);
     }
 };
 

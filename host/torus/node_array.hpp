@@ -1,13 +1,16 @@
-// All nodes of the torus on the device: their memories, queues and counters, and the kernels that they run.
+// The nodes of the torus that are on this rank's device: their memories, queues and counters, and the kernels that they
+// run.
 #pragma once
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "host/ranks/ranks.hpp"
 #include "host/torus/link_exchange.hpp"
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/node_kernels.hpp"
 #include "host/torus/node_memory.hpp"
+#include "host/torus/node_share.hpp"
 #include "host/torus/node_work.hpp"
 #include "host/torus/packet_record.hpp"
 #include "host/torus/torus_result.hpp"
@@ -18,9 +21,10 @@ namespace raya {
 /// The kernels are launched with one work-group for each node; each step is labelled with its kernel's name.
 class NodeArray {
   public:
-    /// Builds the kernels with `options` as the job needs them and takes the device memory.
+    /// Builds the kernels with `options` as the job needs them and takes the device memory. `memories` has the nodes of
+    /// `share`, in the order of its slots; `ranks` and `share` outlive this.
     NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
-              const KernelOptions& options);
+              const KernelOptions& options, const NodeShare& share, Ranks& ranks);
 
     /// Empty queues and boxes, counters 0, no ray made.
     void clear();
@@ -28,39 +32,54 @@ class NodeArray {
     /// Other pixels for the images that follow; at first those of the settings.
     void set_pixels(const PixelSubset& pixels);
 
-    void inject();
-    void trace_voxel(Room room);
-    void route();
-    /// Rays, then returns; returns the words that each link is charged for, [node][RAYA_LINKS].
-    std::vector<std::uint64_t> exchange(const NodeStatus& status);
-    void accept(Room room, std::uint32_t superstep);
+    /// Nodes in neighbouring slots.
+    struct Slots {
+        std::uint32_t first = 0, count = 0;
+    };
+    Slots all() const { return {0, nodes_}; }
+    Slots inner() const { return {0, share_.inner()}; }  // whose links all end here
+    Slots border() const { return {share_.inner(), nodes_ - share_.inner()}; }
 
-    /// What the nodes say; the host waits. accept() clears what they say of one superstep.
+    void inject(Slots nodes);
+    void trace_voxel(Slots nodes, Room room);
+    void route();
+    /// Rays, then returns; returns the words that each link is charged for, [node][RAYA_LINKS]. What goes to other
+    /// ranks is on its way when this returns: only inner nodes may accept until arrive() has waited for it.
+    std::vector<std::uint64_t> exchange(const NodeStatus& status);
+    void arrive();
+    void accept(Slots nodes, Room room, std::uint32_t superstep);
+
+    /// What the nodes of all ranks say; the host waits. accept() clears what they say of one superstep.
     NodeStatus look();
 
     /// What trace_voxel has done in each node, after inject and trace_voxel and before route; `injected` is what the
-    /// nodes said between those two. For kernels that tell what packets cost (KernelOptions::costs).
+    /// nodes said between those two. For kernels that tell what packets cost (KernelOptions::costs), on one rank.
     void tell_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// Return packets that have reached the root since the last call are appended.
+    /// Return packets that have reached the root since the last call are appended, in rank 0.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
 
     /// Messages in the outboxes that were made or changed by the node that sends them; for a trace of the traffic. To
-    /// be called in every superstep; with an empty sink those of this one are left out.
+    /// be called in every superstep; with an empty sink, in all ranks alike, those of this one are left out. Rank 0 is
+    /// told of those of all ranks.
     void record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
-    std::vector<std::uint64_t> read_events();  // [node][RAYA_EVENTS]
-    PacketCounts read_made();
+    std::vector<std::uint64_t> read_events();  // [node][RAYA_EVENTS] of all nodes, in rank 0; elsewhere nothing
+    PacketCounts read_made();                  // of all ranks
     PacketCounts read_ended();
 
-    std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear(): messages
+    std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear(): messages; of all ranks
     std::uint64_t moved_rays() const { return rays_.moved(); }
     std::uint64_t moved_returns() const { return homeward_.moved(); }
     const std::string& build_options() const { return build_options_; }
     bool words_local() const { return options_.words_local; }  // kernels copy a node's words into local memory
 
   private:
-    NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers);
+    NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
+              const NodeShare& share, Ranks& ranks);
+    void write_ways_in();
+    std::vector<PacketRecord> records_of_all(const std::vector<PacketRecord>& own);
+    std::vector<std::size_t> sizes(std::size_t of_node) const;  // [rank]: elements, so many of each of its nodes
     /// Local memory of a kernel: `shared` words, those of its work-items, and the node's words where kernels copy them.
     LocalMemory<std::uint32_t> local_words(std::size_t shared) const;
     PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
@@ -68,12 +87,14 @@ class NodeArray {
     Session& session_;
     const TorusSettings settings_;
     NodeBuffers buffers_;
-    std::uint32_t nodes_, node_words_;
+    const NodeShare& share_;
+    Ranks& ranks_;
+    std::uint32_t nodes_, node_words_;  // nodes: on this device
     KernelOptions options_;
     Buffer<std::uint32_t> memories_, starts_;
     Buffer<raya_run> run_;
     Buffer<raya_packet> queues_;
-    Buffer<std::uint32_t> status_;
+    Buffer<std::uint32_t> status_, ways_in_;
     Buffer<raya_head> returns_;
     Buffer<std::uint64_t> events_, made_, ended_;
     Buffer<raya_treated> treated_;

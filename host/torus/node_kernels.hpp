@@ -17,6 +17,7 @@ namespace node_kernels {
 
 using Words = const Buffer<std::uint32_t>&;  // of all nodes, where each one's start, where boxes have been sent
 using Run = const Buffer<raya_run>&;
+using First = Uint<"first_node">;        // slot of the first node that a launch is for
 using Own = LocalMemory<std::uint32_t>;  // of one node
 using Queues = Buffer<raya_packet>&;
 using Boxes = Buffer<std::uint32_t>&;
@@ -25,14 +26,14 @@ using Status = Buffer<std::uint32_t>&;
 using Counters = Buffer<std::uint64_t>&;
 using Treated = Buffer<raya_treated>&;
 
-using Inject =
-    DescribedKernel<"torus/inject.cl", "inject", Words, Words, Run, Own, Queues, Status, Counters, Counters, Counters>;
-using TraceVoxel = DescribedKernel<"torus/trace_voxel.cl", "trace_voxel", Words, Words, Run, Room, Own, Queues, Status,
-                                   Counters, Counters, Counters, Treated>;
-using Route =
-    DescribedKernel<"torus/route.cl", "route", Words, Words, Run, Own, Queues, Boxes, Boxes, Returns, Status, Counters>;
-using Accept = DescribedKernel<"torus/accept.cl", "accept", Words, Words, Run, Room, Uint<"turn">, Words, Words, Own,
-                               Queues, Boxes, Boxes, Boxes, Returns, Status, Counters>;
+using Inject = DescribedKernel<"torus/inject.cl", "inject", Words, Words, Run, First, Own, Queues, Status, Counters,
+                               Counters, Counters>;
+using TraceVoxel = DescribedKernel<"torus/trace_voxel.cl", "trace_voxel", Words, Words, Run, First, Room, Own, Queues,
+                                   Status, Counters, Counters, Counters, Treated>;
+using Route = DescribedKernel<"torus/route.cl", "route", Words, Words, Run, First, Own, Queues, Boxes, Boxes, Returns,
+                              Status, Counters>;
+using Accept = DescribedKernel<"torus/accept.cl", "accept", Words, Words, Run, Room, Uint<"turn">, First, Words, Words,
+                               Words, Own, Queues, Boxes, Boxes, Boxes, Returns, Status, Counters>;
 
 }  // namespace node_kernels
 }  // namespace raya

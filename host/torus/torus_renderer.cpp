@@ -12,6 +12,7 @@
 #include "host/torus/composer.hpp"
 #include "host/torus/node_array.hpp"
 #include "host/torus/standstill.hpp"
+#include "host/torus/torus_job.hpp"
 #include "host/torus/torus_plan.hpp"
 
 namespace raya {
@@ -20,11 +21,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-PackedJob packed(const Session& session, const Scene& scene, const TorusSettings& settings, const LengthScale& scale) {
-    const StepLog::Step step = session.step("pack scene");
-    return pack_job(scene, job_settings(settings, scale));
-}
 
 // Of what is to be done, by the mean of two measures: packets that are finished beside those that live, which tells the
 // time while all nodes compute, and says too much in the end, when few packets take as many supersteps; and how far the
@@ -51,23 +47,21 @@ struct Watch {
 
 struct TorusRenderer::Parts {
     Session& session;
+    Ranks& ranks;
     TorusSettings settings;
     std::string scene;
-    LengthScale scale;
-    PackedJob job;
-    Partition partition{};
-    NodeMemories memories{};
-    NodeBuffers buffers{};
-    KernelOptions options{};
+    NodeShare share;
+    DeviceMemory device;  // that every rank has
+    TorusJob job;
+    KernelOptions options;
     std::unique_ptr<NodeArray> nodes{};
     std::unique_ptr<Composer> composer{};
     double build_s = 0;
 
-    void divide(std::uint32_t lights);
     void build();
     std::optional<StandstillFigures> run(TorusResult& result, std::vector<raya_head>& returns,
                                          const ProgressCallback& progress, const Watch& watch);
-    void compute(Room room, bool injects, const NodeWorkSink& work);
+    void compute(NodeArray::Slots slots, Room room, bool injects, const NodeWorkSink& work);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
@@ -75,33 +69,26 @@ struct TorusRenderer::Parts {
     std::uint64_t node_bytes(const NodeBuffers& any) const;
 };
 
-TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings) {
-    const LengthScale scale = length_scale(scene, settings.format);
+TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks) {
+    const TorusSettings chosen = checked(settings, scene, session.device());
+    const NodeShare share(chosen.torus, ranks.count(), ranks.rank());
+    const DeviceMemory device = least_memory(session.device(), ranks);
+    TorusJob job = make_torus_job(session, scene, chosen, share, device, ranks);
+    const KernelOptions options = kernel_options(chosen, job.outline);
     parts_.reset(new Parts{.session = session,
-                           .settings = checked(settings, scene, session.device()),
+                           .ranks = ranks,
+                           .settings = chosen,
                            .scene = scene.name,
-                           .scale = scale,
-                           .job = packed(session, scene, settings, scale)});
-    Parts& p = *parts_;
-    p.divide(static_cast<std::uint32_t>(scene.lights.size()));
-    p.options = kernel_options(p.settings, p.job);
-    p.build();
-}
-
-void TorusRenderer::Parts::divide(std::uint32_t lights) {
-    const StepLog::Step step = session.step("divide scene");
-    partition = raya::partition(job, settings.format, settings.voxels);
-    memories = pack_nodes(job, partition, settings.torus);
-    buffers =
-        plan_buffers(scene, memories, settings.torus, settings.memory_bytes, settings.queue,
-                     raya_shortest_queue(lights, settings.bounces), trial_of(job, settings.format, settings.voxels));
-    check_device_memory(scene, buffers, raya_nodes(settings.torus), session.device());
-    set_windows(memories, settings, job, partition);
+                           .share = share,
+                           .device = device,
+                           .job = std::move(job),
+                           .options = options});
+    ranks.one_first_on_each_host([this] { parts_->build(); });
 }
 
 TorusRenderer::~TorusRenderer() = default;
 
-const LengthScale& TorusRenderer::scale() const { return parts_->scale; }
+const LengthScale& TorusRenderer::scale() const { return parts_->job.scale; }
 
 void TorusRenderer::set_pixels(const PixelSubset& pixels) {
     parts_->settings.pixels = pixels;
@@ -111,8 +98,8 @@ void TorusRenderer::set_pixels(const PixelSubset& pixels) {
 void TorusRenderer::set_queue(std::uint32_t queue) {
     Parts& p = *parts_;
     const NodeBuffers other = buffers_for(queue);
-    check_device_memory(p.scene, other, raya_nodes(p.settings.torus), p.session.device());
-    p.buffers = other;
+    check_device_memory(p.scene, other, p.share.most_nodes(), p.session.device().name, p.device);
+    p.job.buffers = other;
     p.build();
 }
 
@@ -124,30 +111,28 @@ bool TorusRenderer::ends() {
 
 QueueTrial TorusRenderer::queue_trial() {
     Parts& p = *parts_;
-    return {
-        .bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
-        .limit = p.settings.memory_bytes.value_or(UINT64_MAX),
-        .device_holds =
-            [&p](const NodeBuffers& b) { return device_holds(b, raya_nodes(p.settings.torus), p.session.device()); },
-        .ends =
-            [this](const NodeBuffers& b) {
-                set_queue(b.queue);
-                return ends();
-            }};
+    return {.bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
+            .limit = p.settings.memory_bytes.value_or(UINT64_MAX),
+            .device_holds = [&p](const NodeBuffers& b) { return device_holds(b, p.share.most_nodes(), p.device); },
+            .ends =
+                [this](const NodeBuffers& b) {
+                    set_queue(b.queue);
+                    return ends();
+                }};
 }
 
 void TorusRenderer::Parts::build() {
     const StepLog::Step step = session.step("set up device");
     const Clock::time_point start = Clock::now();
-    nodes = std::make_unique<NodeArray>(session, settings, memories, buffers, options);
+    nodes = std::make_unique<NodeArray>(session, settings, job.memories, job.buffers, options, share, ranks);
     KernelOptions one_lane = options;
     one_lane.lanes = one_lane.group_size = 1;
     Kernels kernels(session, one_lane, settings.kernels.sources);
     composer = std::make_unique<Composer>(kernels);
     nodes->clear();
-    nodes->trace_voxel(Room::kWholeTree);  // of empty queues: PoCL compiles a kernel's body at its first launch
+    nodes->trace_voxel(nodes->all(), Room::kWholeTree);  // of empty queues: PoCL compiles a kernel at its first launch
     nodes->route();
-    nodes->accept(Room::kWholeTree, 0);
+    nodes->accept(nodes->all(), Room::kWholeTree, 0);
     session.finish();
     build_s = seconds_since(start);
 }
@@ -165,24 +150,25 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
     if (const auto stand = p.run(result, returns, progress, {sink, packets_every, step_sink, work_sink}))
         throw Standstill(*stand);
-    p.compose(result, returns);
+    if (p.ranks.first()) p.compose(result, returns);
     p.collect(result);
     result.render_s = seconds_since(start);
     p.describe(result);
-    p.check(result);
+    if (p.ranks.first()) p.check(result);
     return result;
 }
 
 // What nodes do before packets move.
-void TorusRenderer::Parts::compute(Room room, bool injects, const NodeWorkSink& work) {
-    if (injects) nodes->inject();
-    if (!work) return nodes->trace_voxel(room);
+void TorusRenderer::Parts::compute(NodeArray::Slots slots, Room room, bool injects, const NodeWorkSink& work) {
+    if (injects) nodes->inject(slots);
+    if (!work) return nodes->trace_voxel(slots, room);
     const NodeStatus injected = nodes->look();
-    nodes->trace_voxel(room);
+    nodes->trace_voxel(slots, room);
     nodes->tell_work(injected, work);
 }
 
-// To the machine's end, or to a stand.
+// To the machine's end, or to a stand. All ranks see the status of all nodes, so they decide alike. While packets
+// travel between ranks the inner nodes go on with the next superstep.
 std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, std::vector<raya_head>& returns,
                                                            const ProgressCallback& progress, const Watch& watch) {
     const StepLog::Step step = session.step("supersteps");
@@ -192,16 +178,16 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
     bool crowded = false;
     int stands = 0;  // supersteps without progress
     std::uint64_t most_live = 0;
+    compute(nodes->all(), room, true, watch.work);
     for (std::uint32_t superstep = 0;; ++superstep) {
-        compute(room, !crowded, watch.work);
         nodes->route();
         const NodeStatus status = nodes->look();
         nodes->gather(status, returns);
         if (watch.packets) nodes->record(status, superstep, superstep % watch.every ? PacketSink{} : watch.packets);
         const std::vector<std::uint64_t> words = nodes->exchange(status);
-        nodes->accept(room, superstep);
+        nodes->accept(nodes->inner(), room, superstep);
 
-        const Census census = census_of(status, raya_nodes(settings.torus), buffers.queue);
+        const Census census = census_of(status, raya_nodes(settings.torus), job.buffers.queue);
         const std::uint64_t most_words = *std::max_element(words.begin(), words.end());
         result.supersteps.push_back({census.cycles, most_words, census.live});
         if (watch.steps)
@@ -210,14 +196,20 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
         most_live = std::max(most_live, census.live);
         const bool ended = census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made;
         if (progress) progress(ended ? 1 : share_done(census, returns.size(), most_live));
-        if (ended) return {};
-        crowded = census.fullest > buffers.queue / 4;
+        crowded = census.fullest > job.buffers.queue / 4;
         // What a superstep with little room has accepted is seen in the next one.
         stands = census.progress == 0 && most_words == 0 ? stands + 1 : 0;
-        if (stands == 3)
-            return StandstillFigures{scene,        superstep, census.live, census.full, raya_nodes(settings.torus),
-                                     buffers.queue};
-        room = stands > 0 ? Room::kTight : Room::kWholeTree;
+        const Room next = stands > 0 ? Room::kTight : Room::kWholeTree;
+        const bool goes_on = !ended && stands < 3;
+        if (goes_on && nodes->inner().count > 0) compute(nodes->inner(), next, !crowded, watch.work);
+        nodes->arrive();
+        nodes->accept(nodes->border(), room, superstep);
+        if (ended) return {};
+        if (!goes_on)
+            return StandstillFigures{
+                scene, superstep, census.live, census.full, raya_nodes(settings.torus), job.buffers.queue};
+        if (nodes->border().count > 0) compute(nodes->border(), next, !crowded, watch.work);
+        room = next;
     }
 }
 
@@ -239,7 +231,7 @@ void TorusRenderer::Parts::collect(TorusResult& result) {
         result.events[i % RAYA_EVENTS] += events[i];
         loads[i / RAYA_EVENTS] += cycles[i % RAYA_EVENTS] * events[i];
     }
-    result.load = load_of(std::move(loads));
+    if (ranks.first()) result.load = load_of(std::move(loads));
     result.made = nodes->read_made();
     result.ended = nodes->read_ended();
     const NodeStatus status = nodes->look();
@@ -270,18 +262,15 @@ void TorusRenderer::Parts::check(const TorusResult& result) const {
 
 // Of the fullest node.
 std::uint64_t TorusRenderer::Parts::node_bytes(const NodeBuffers& any) const {
-    std::uint64_t words = 0;
-    for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
-        words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
-    return raya::node_bytes(words, any, links_of_node(settings.torus));
+    return raya::node_bytes(job.fullest_words, any, links_of_node(settings.torus));
 }
 
 void TorusRenderer::Parts::describe(TorusResult& result) const {
-    result.copies = memories.copies;
-    result.scale = scale;
-    result.buffers = buffers;
-    result.copied_words = nodes->words_local() ? memories.words.size() : 0;
-    result.node_bytes = node_bytes(buffers);
+    result.copies = job.memories.copies;
+    result.scale = job.scale;
+    result.buffers = job.buffers;
+    result.copied_words = nodes->words_local() ? job.words : 0;
+    result.node_bytes = node_bytes(job.buffers);
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;
     result.build_options = nodes->build_options();

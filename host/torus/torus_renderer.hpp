@@ -5,6 +5,7 @@
 
 #include "host/cl/commands.hpp"
 #include "host/files/progress.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/node_work.hpp"
@@ -18,15 +19,17 @@ namespace raya {
 
 class TorusRenderer {
   public:
-    /// Partitions and packs the scene, checks that it fits the nodes, builds the kernels and takes the device memory.
-    /// Throws UserError (what does not fit, what is out of range), DeviceError.
-    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings);
+    /// Partitions and packs the scene, checks that it fits the nodes, builds the kernels and takes the device memory
+    /// for the nodes of this rank. Only rank 0 looks at the scene. Throws UserError (what does not fit, what is out of
+    /// range, more ranks than nodes), DeviceError.
+    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::alone());
     ~TorusRenderer();
 
     /// One image; may be called again. `sink`, where given, is told of every packet between nodes, in the order of
     /// supersteps, then sources, or of those of supersteps 0, `packets_every`, ... alone, since telling takes time;
     /// `step_sink` of every superstep; `work_sink` of what every node did in every superstep, for settings with
-    /// `history` alone (std::logic_error). Throws Standstill.
+    /// `history` alone (std::logic_error), on one rank. Throws Standstill. In other ranks than 0 the result is without
+    /// image and counts, and sinks are given but not told.
     TorusResult render(const ProgressCallback& progress = {}, const PacketSink& sink = {},
                        const SuperstepSink& step_sink = {}, std::uint32_t packets_every = 1,
                        const NodeWorkSink& work_sink = {});

@@ -23,16 +23,17 @@ void mark_contrasts(__global const uint* restrict broadcast,  // the job's words
                     const uint begin,                         // number in its share of the block's first pixel
                     const uint band,                          // pixels in the block
                     const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                    const uint first_pe,                      // number of the PE that is work-group 0
                     const float threshold,                    // a number of the format, 0..1
                     __global const float* restrict arrived,   // [PE][band][3]
                     __global const float* restrict pixels,    // [PE][capacity][3]
                     __global uchar* restrict marks)           // [PE][capacity]: set to 1 where the pixel differs
 {
-    const uint pe = get_group_id(0);
+    const uint group = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
-    const arrived_block block = open_arrived(m, pe, distance, side, begin, band, arrived);
-    __global const float* own = pixels + (size_t)pe * capacity * 3;
-    __global uchar* mine = marks + (size_t)pe * capacity;
+    const arrived_block block = open_arrived(m, first_pe, distance, side, begin, band, arrived);
+    __global const float* own = pixels + (size_t)group * capacity * 3;
+    __global uchar* mine = marks + (size_t)group * capacity;
     const uint end = min(capacity, raya_share_size(block.share));
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
         const uint n = arrived_neighbour(&block, k);

@@ -19,13 +19,14 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
                     const uint begin,                         // number in its share of the block's first pixel
                     const uint band,                          // pixels in the block
                     const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                    const uint first_pe,                      // number of the PE that is work-group 0
                     __global const float* restrict arrived,   // [PE][band][3]
                     __global float* restrict sums)            // [PE][capacity][3]: added to
 {
-    const uint pe = get_group_id(0);
+    const uint group = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
-    const arrived_block block = open_arrived(m, pe, distance, side, begin, band, arrived);
-    __global float* mine = sums + (size_t)pe * capacity * 3;
+    const arrived_block block = open_arrived(m, first_pe, distance, side, begin, band, arrived);
+    __global float* mine = sums + (size_t)group * capacity * 3;
     const uint end = min(capacity, raya_share_size(block.share));
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
         const uint n = arrived_neighbour(&block, k);
@@ -41,12 +42,13 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void take_means(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                 const uint capacity,                      // pixels in a PE's memory; 0: do nothing
+                const uint first_pe,                      // number of the PE that is work-group 0
                 __global float* restrict sums)            // [PE][capacity][3]: sums on entry, means on return
 {
-    const uint pe = get_group_id(0);
+    const uint group = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
-    const raya_share share = raya_share_of(m, pe);
-    __global float* mine = sums + (size_t)pe * capacity * 3;
+    const raya_share share = raya_share_of(m, first_pe + group);
+    __global float* mine = sums + (size_t)group * capacity * 3;
     const uint end = min(capacity, raya_share_size(share));
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
         const raya_pixel pixel = raya_pixel_of(m, share, k);

@@ -91,6 +91,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            const uint begin,                         // pixels `begin` to `end` - 1 of each share are traced now;
            const uint end,                           // they lie in the block
            const uint points,                        // RAYA_POINTS_*: which points of them
+           const uint first_pe,                      // number of the PE that is work-group 0
            __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; of no use
                                                      // for RAYA_POINTS_OWN
            __local uint* memory,                     // the number of the PE's next pixel, then, where
@@ -102,7 +103,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     // An argument, not a __local variable: with PoCL 3.1 pixels were lost where a function that
     // took its address was not inlined.
     volatile __local uint* next = memory;
-    const uint pe = get_group_id(0), item = get_local_id(0);
+    const uint group = get_group_id(0), item = get_local_id(0);
     if (item == 0) *next = begin;
 #if RAYA_WORDS_LOCAL
     for (uint i = item; i < word_count; i += RAYA_GROUP) memory[1 + i] = broadcast[i];
@@ -113,15 +114,15 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     barrier(CLK_LOCAL_MEM_FENCE);
     pixel_store store;
     store.mapping = ((job_words)scene)->mapping;
-    store.share = raya_share_of(store.mapping, pe);
+    store.share = raya_share_of(store.mapping, first_pe + group);
     store.block = block;
     store.end = min(end, raya_share_size(store.share));
     store.points = points;
-    store.pixels = pixels + (size_t)pe * capacity * 3;
-    store.marks = marks + (size_t)pe * capacity;
-    store.cycles = cycles + (size_t)pe * capacity;
+    store.pixels = pixels + (size_t)group * capacity * 3;
+    store.marks = marks + (size_t)group * capacity;
+    store.cycles = cycles + (size_t)group * capacity;
     open_store(&store);
     trace_share(scene, &store, next);
-    __global ulong* mine = events + ((size_t)pe * RAYA_GROUP + item) * RAYA_EVENTS;
+    __global ulong* mine = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
     for (uint e = 0; e < RAYA_EVENTS; ++e) mine[e] += sum_of(store.totals[e]);
 }

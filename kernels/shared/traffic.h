@@ -4,7 +4,8 @@
 //   box     [link][node][1 + capacity][w]: a header, whose first word is the number of packets, then the packets, of
 //           w = 16 words for rays and 8 for returns. An outbox is filled by its node and copied into the inbox at the
 //           other end of the link, which the node there empties; both are numbered by the link's direction and the node
-//           at its start
+//           at its start. Where nodes are divided over ranks, `node` is a node's slot on its rank's device, and inboxes
+//           of links that start on other ranks come behind those slots
 //   status  [node][RAYA_STATUS_WORDS]
 //
 // Rays and returns have boxes of their own. Returns all go to the root, each node's by its one link home, from inbox
@@ -40,6 +41,8 @@ RAYA_SHARED_SIZE(raya_treated, 4 * 4);
 
 // What stays the same through a render, and the nodes read from a buffer.
 typedef struct {
+    raya_u32 nodes;           // on the device
+    raya_u32 inboxes;         // on the device, of each link: of links that start here, then of those from other ranks
     raya_u32 queue;           // packets that a node's queue holds
     raya_u32 box;             // packets that a box holds
     raya_u32 host;            // returns that wait for the host at most
@@ -47,7 +50,7 @@ typedef struct {
     raya_u32 root_injects;    // 1: the root makes all primary rays, or there is no other node; 0: every node its own
     raya_u32 return_a_ray;    // 1: one return of each ray is a message, made when its shadow rays are done; 0: all are
 } raya_run;
-RAYA_SHARED_SIZE(raya_run, 4 * 7);
+RAYA_SHARED_SIZE(raya_run, 4 * 9);
 
 // Packets that a ray may turn into beside the one that takes its slot: shadow rays (lights or a return for
 // each) and two rays that follow.

@@ -74,6 +74,8 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
             __global const raya_run* restrict run,
             const uint tight,                           // 1: any free slot will do
             const uint turn,                            // number of the superstep: which link comes first
+            const uint first_node,                      // slot of the node that is work-group 0
+            __global const uint* restrict ways_in,      // [link][node]: slot of the inbox of the link that leads there
             __global const uint* restrict sent,         // [link][node]: 1 where its outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: ... of returns
             __local uint* goals,                        // L + 1 words
@@ -85,19 +87,18 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
             __global uint* restrict status,             // [node][RAYA_STATUS_WORDS]
             __global ulong* restrict ended)             // [node][RAYA_KINDS], added to
 {
-    const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0), box = run->box;
-    const int root = number == RAYA_ROOT;
-    __global const raya_node* const header = (__global const raya_node*)(memories + starts[number]);
-    const raya_torus torus = header->torus;
-    const uint home = raya_home_link(torus, number);
-    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);
+    const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
+    __global const raya_node* const header = (__global const raya_node*)(memories + starts[slot]);
+    const int root = header->number == RAYA_ROOT;
+    const uint home = raya_home_link(header->torus, header->number);
+    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
     __global raya_head* const homeward = root ? returns : returns_in(home_box);
-    status += (size_t)number * RAYA_STATUS_WORDS;
+    status += (size_t)slot * RAYA_STATUS_WORDS;
     const uint before = status[RAYA_STATUS_QUEUE];
-    open_queue queue = {queues + (size_t)number * run->queue, before, run->queue,
+    open_queue queue = {queues + (size_t)slot * run->queue, before, run->queue,
                         raya_most_new_packets(header->job.lights), tight};
     // The host has taken what was there, or copied it.
-    const int gone = root || return_sent[(size_t)home * nodes + number];
+    const int gone = root || return_sent[(size_t)home * nodes + slot];
     const uint home_before = gone ? 0 : status[RAYA_STATUS_RETURN_OUTBOX + home];
     uint home_used = home_before;
     __local uint* const charged = goals + RAYA_GROUP;
@@ -105,9 +106,9 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     node_barrier();
     for (uint i = 0; i < RAYA_LINKS; ++i) {
         const uint link = (i + turn) % RAYA_LINKS;
-        const uint start = raya_link_end(torus, number, link ^ 1);  // of the link that leads here
-        __global uint* inbox = inboxes + raya_box_at(link, nodes, start, box, RAYA_PACKET_WORDS);
-        __global uint* return_inbox = return_inboxes + raya_box_at(link, nodes, start, box, RAYA_RETURN_WORDS);
+        const uint way = ways_in[(size_t)link * nodes + slot];
+        __global uint* inbox = inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_PACKET_WORDS);
+        __global uint* return_inbox = return_inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_RETURN_WORDS);
         const uint left = empty_inbox(inbox, &queue, goals);
         uint returns_left;
         home_used += pass_returns(return_inbox, homeward, home_used, root ? run->host : box, &returns_left,
@@ -118,12 +119,12 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
         return_inbox[0] = returns_left;
         status[RAYA_STATUS_INBOX + link] = left;
         status[RAYA_STATUS_RETURN_INBOX + link] = returns_left;
-        if (sent[(size_t)link * nodes + number]) status[RAYA_STATUS_OUTBOX + link] = 0;
+        if (sent[(size_t)link * nodes + slot]) status[RAYA_STATUS_OUTBOX + link] = 0;
     }
     if (item) return;
     if (root) {
         status[RAYA_STATUS_HOST] = home_used;
-        ended[RAYA_ROOT * RAYA_KINDS + RAYA_KIND_RETURN] += home_used;
+        ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += home_used;
     } else {
         status[RAYA_STATUS_RETURN_OUTBOX + home] = home_used;
         status[RAYA_STATUS_RETURN_CHARGED] = *charged;

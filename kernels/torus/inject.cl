@@ -141,6 +141,7 @@ __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void inject(__global const uint* restrict memories,  // as for trace_voxel, and all that is not explained here
             __global const uint* restrict starts,
             __global const raya_run* restrict run,
+            const uint first_node,
             __local uint* local_words,               // RAYA_COUNT_WORDS + L + 1, then, where RAYA_WORDS_LOCAL is 1,
                                                      // the words of a node
             __global raya_packet* restrict queues,
@@ -149,14 +150,14 @@ void inject(__global const uint* restrict memories,  // as for trace_voxel, and 
             __global ulong* restrict made,
             __global ulong* restrict ended)
 {
-    const uint number = get_group_id(0), item = get_local_id(0), capacity = run->queue;
+    const uint slot = node_slot(first_node), item = get_local_id(0), capacity = run->queue;
     injection to;
-    to.packets = queues + (size_t)number * capacity;
+    to.packets = queues + (size_t)slot * capacity;
     to.shared = local_words;
     to.own = local_words + RAYA_COUNT_WORDS;
-    status += (size_t)number * RAYA_STATUS_WORDS;
+    status += (size_t)slot * RAYA_STATUS_WORDS;
     open_shared(to.shared, status[RAYA_STATUS_QUEUE]);
-    const node n = open_node(memories, starts, local_words + RAYA_COUNT_WORDS + RAYA_GROUP + 1);
+    const node n = open_node(memories, starts, slot, local_words + RAYA_COUNT_WORDS + RAYA_GROUP + 1);
     const uint room = raya_room_of_ray(raya_most_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
     to.most = min(max(capacity / 8, 1u), capacity - room);
     const uint root = run->root_injects, stride = run->stride, rows = rows_of(&n, root);
@@ -173,5 +174,5 @@ void inject(__global const uint* restrict memories,  // as for trace_voxel, and 
     status[RAYA_STATUS_NEXT_ROW] = i;
     status[RAYA_STATUS_NEXT_COLUMN] = at;
     status[RAYA_STATUS_ROWS] = rows;
-    report_counts(&n, to.shared, status, events, made, ended);
+    report_counts(&n, slot, to.shared, status, events, made, ended);
 }

@@ -27,6 +27,7 @@ __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void route(__global const uint* restrict memories,   // as for trace_voxel
            __global const uint* restrict starts,
            __global const raya_run* restrict run,
+           const uint first_node,
            __local uint* local_words,                // RAYA_ROUTE_WORDS + L, then, where RAYA_WORDS_LOCAL is 1, the
                                                      // words of a node
            __global raya_packet* restrict queues,    // [node][queue]
@@ -36,17 +37,17 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
            __global uint* restrict status,           // [node][RAYA_STATUS_WORDS]
            __global ulong* restrict ended)           // [node][RAYA_KINDS], added to
 {
-    const uint number = get_group_id(0), item = get_local_id(0), nodes = get_num_groups(0), box = run->box;
+    const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
     __local uint *used = local_words, *limit = used + RAYA_GOALS, *goals = limit + RAYA_GOALS;
     __local uint *moved = goals + RAYA_GROUP, *charged = moved + 1;
-    status += (size_t)number * RAYA_STATUS_WORDS;
-    __global raya_packet* const queue = queues + (size_t)number * run->queue;
+    status += (size_t)slot * RAYA_STATUS_WORDS;
+    __global raya_packet* const queue = queues + (size_t)slot * run->queue;
     const uint count = status[RAYA_STATUS_QUEUE];
-    const node n = open_node(memories, starts, local_words + RAYA_ROUTE_WORDS + RAYA_GROUP);
-    const int root = number == RAYA_ROOT;
-    const uint home = raya_home_link(n.torus, number);
+    const node n = open_node(memories, starts, slot, local_words + RAYA_ROUTE_WORDS + RAYA_GROUP);
+    const int root = n.number == RAYA_ROOT;
+    const uint home = raya_home_link(n.torus, n.number);
     const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
-    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, number, box, RAYA_RETURN_WORDS);
+    __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
     __global raya_head* const homeward = root ? returns : returns_in(home_box);
     if (item == 0) {
         for (uint link = 0; link < RAYA_LINKS; ++link) {
@@ -59,9 +60,9 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         *charged = status[RAYA_STATUS_RETURN_CHARGED];
     }
     for (uint first = 0; first < count; first += RAYA_GROUP) {
-        const uint slot = first + item;
-        const raya_packet packet = queue[min(slot, count - 1)];
-        uint goal = slot < count ? goal_of(&n, &packet.head) : RAYA_GONE;
+        const uint at = first + item;
+        const raya_packet packet = queue[min(at, count - 1)];
+        uint goal = at < count ? goal_of(&n, &packet.head) : RAYA_GONE;
         goals[item] = goal;
         node_barrier();
         const int fits = goal >= RAYA_STAYS || used[goal] + rank_among(goals, goal) < limit[goal];
@@ -75,7 +76,7 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         if (goal == RAYA_HOME) homeward[place] = packet.head;
         if (goal == RAYA_HOME && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
         if (goal < RAYA_LINKS)
-            rays_in(outboxes + raya_box_at(goal, nodes, number, box, RAYA_PACKET_WORDS))[place] = packet;
+            rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS))[place] = packet;
         node_barrier();
         if (item == 0) {
             for (uint g = 0; g < RAYA_GONE; ++g) {
@@ -89,9 +90,9 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
     if (item) return;
     for (uint link = 0; link < RAYA_LINKS; ++link) {
         status[RAYA_STATUS_OUTBOX + link] = used[link];
-        outboxes[raya_box_at(link, nodes, number, box, RAYA_PACKET_WORDS)] = used[link];
+        outboxes[raya_box_at(link, nodes, slot, box, RAYA_PACKET_WORDS)] = used[link];
     }
-    if (root) ended[RAYA_ROOT * RAYA_KINDS + RAYA_KIND_RETURN] += used[RAYA_HOME] - status[home_status];
+    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += used[RAYA_HOME] - status[home_status];
     if (!root) home_box[0] = used[RAYA_HOME];
     status[home_status] = used[RAYA_HOME];
     status[RAYA_STATUS_RETURN_CHARGED] = root ? 0 : *charged;

@@ -155,6 +155,7 @@ __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void trace_voxel(__global const uint* restrict memories,  // the words of all nodes (kernels/shared/node.h)
                  __global const uint* restrict starts,    // [nodes + 1]: where each node's words start
                  __global const raya_run* restrict run,   // (kernels/shared/traffic.h)
+                 const uint first_node,                   // slot of the node that is work-group 0
                  const uint tight,                        // 1: rays need room for what they turn into at once, not for
                                                           // all their tree
                  __local uint* local_words,               // RAYA_COUNT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the
@@ -166,20 +167,20 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  __global ulong* restrict ended,          // [node][RAYA_KINDS], added to
                  __global raya_treated* restrict treated) // [node][queue], where RAYA_COSTS is 1; else not touched
 {
-    const uint number = get_group_id(0), item = get_local_id(0);
-    status += (size_t)number * RAYA_STATUS_WORDS;
+    const uint slot = node_slot(first_node), item = get_local_id(0);
+    status += (size_t)slot * RAYA_STATUS_WORDS;
     const uint count = status[RAYA_STATUS_QUEUE];
     flight f;
-    f.queue = queues + (size_t)number * run->queue;
+    f.queue = queues + (size_t)slot * run->queue;
     f.capacity = run->queue;
     f.tight = tight;
     f.charged = run->return_a_ray ? 0 : RAYA_STATE_CHARGED;
     f.shared = local_words;
     open_shared(f.shared, count);
-    const node n = open_node(memories, starts, local_words + RAYA_COUNT_WORDS);
+    const node n = open_node(memories, starts, slot, local_words + RAYA_COUNT_WORDS);
 #if RAYA_COSTS
     f.job = (job_words)n.memory;
-    treated += (size_t)number * run->queue;
+    treated += (size_t)slot * run->queue;
 #endif
     for (;;) {
         // The packets that came last first: among them are the deepest rays, which ask for the least room.
@@ -192,5 +193,5 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
 #endif
     }
     node_barrier();
-    if (item == 0) report_counts(&n, f.shared, status, events, made, ended);
+    if (item == 0) report_counts(&n, slot, f.shared, status, events, made, ended);
 }

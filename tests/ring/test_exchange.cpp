@@ -37,8 +37,10 @@ Smoothed smoothed(Kernels& kernels, const Shares& s, ExchangeWay way) {
     job.mapping = s.mapping;
     std::vector<std::uint32_t> words(kWordsOf<raya_job>);
     put_record(words, 0, job);
-    const ExchangeSetup setup{session, session.buffer<std::uint32_t>("job", words.size()), s.mapping.pes, s.capacity,
-                              1};
+    const ExchangeSetup setup{.session = session,
+                              .broadcast = session.buffer<std::uint32_t>("job", words.size()),
+                              .pes = {0, s.mapping.pes},
+                              .capacity = s.capacity};
     Buffer<std::uint32_t> broadcast = setup.broadcast;
     session.write("job", broadcast, words);
     Buffer<float> pixels = session.buffer<float>("pixels", s.pixels.size());

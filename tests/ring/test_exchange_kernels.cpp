@@ -100,16 +100,18 @@ class Runner {
         const Uint<"begin"> begin{l.begin};
         const Uint<"band"> band{l.band};
         const Uint<"capacity"> capacity{l.capacity};
+        const Uint<"first_pe"> first{0};
         if (step_ == Step::kTakeMeans) {
             auto kernel = kernels_.get<TakeMeansKernel>();
-            session_.launch(name, kernel, groups, group_, job, capacity, pixels);
+            session_.launch(name, kernel, groups, group_, job, capacity, first, pixels);
         } else if (step_ == Step::kAddNeighbours) {
             auto kernel = kernels_.get<AddNeighboursKernel>();
-            session_.launch(name, kernel, groups, group_, job, side, distance, begin, band, capacity, arrived, pixels);
+            session_.launch(name, kernel, groups, group_, job, side, distance, begin, band, capacity, first, arrived,
+                            pixels);
         } else {
             auto kernel = kernels_.get<MarkContrastsKernel>();
-            session_.launch(name, kernel, groups, group_, job, side, distance, begin, band, capacity, l.threshold,
-                            arrived, pixels, marks);
+            session_.launch(name, kernel, groups, group_, job, side, distance, begin, band, capacity, first,
+                            l.threshold, arrived, pixels, marks);
         }
     }
 
@@ -202,7 +204,7 @@ struct Fault {
 const Fault kFaults[] = {
     {"the block that arrived next door",
      Step::kAddNeighbours,
-     {"ring/arrived.clh", "arrived + (size_t)pe * band", "arrived + (size_t)((pe + 1) % m.pes) * band"},
+     {"ring/arrived.clh", "arrived + (size_t)group * band", "arrived + (size_t)((group + 1) % m.pes) * band"},
      true,
      false},
     {"beyond the end of the band",
@@ -217,14 +219,14 @@ const Fault kFaults[] = {
      false},
     {"the sums next door",
      Step::kAddNeighbours,
-     {"ring/filter.cl", "(size_t)pe * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)",
-      "(size_t)(pe + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)"},
+     {"ring/filter.cl", "(size_t)group * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)",
+      "(size_t)(group + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)"},
      false,
      true},
     {"the sums next door",
      Step::kTakeMeans,
-     {"ring/filter.cl", "(size_t)pe * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)",
-      "(size_t)(pe + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)"},
+     {"ring/filter.cl", "(size_t)group * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)",
+      "(size_t)(group + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(share)"},
      false,
      true},
     {"the sums of the first PE",
@@ -239,13 +241,13 @@ const Fault kFaults[] = {
      true},
     {"the pixels next door",
      Step::kMarkContrasts,
-     {"ring/contrast.cl", "pixels + (size_t)pe * capacity",
-      "pixels + (size_t)((pe + 1) % block.mapping.pes) * capacity"},
+     {"ring/contrast.cl", "pixels + (size_t)group * capacity",
+      "pixels + (size_t)((group + 1) % block.mapping.pes) * capacity"},
      true,
      false},
     {"the marks next door",
      Step::kMarkContrasts,
-     {"ring/contrast.cl", "marks + (size_t)pe * capacity", "marks + (size_t)(pe + 1) * capacity"},
+     {"ring/contrast.cl", "marks + (size_t)group * capacity", "marks + (size_t)(group + 1) * capacity"},
      false,
      true},
 };

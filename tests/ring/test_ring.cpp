@@ -89,7 +89,7 @@ TEST_CASE("P rotations either way bring every block home", "[ring]") {
         for (const Turn turn : {Turn::kDown, Turn::kUp}) {
             CAPTURE(kSeed, pes, int(turn));
             Communication counted;
-            Ring ring(session, counted, pes, 5);
+            Ring ring(session, counted, static_cast<std::uint32_t>(pes), 5);
             const Bits before = random_words(random, pes * 5);
             ring.load(filled(session, "own", before), 5, 0);
             for (std::size_t n = 1; n <= pes; ++n) {
@@ -110,7 +110,7 @@ TEST_CASE("rotations are counted as the words that were copied", "[ring]") {
         const std::uint32_t down = random_below(random, 5), up = random_below(random, 5);
         CAPTURE(kSeed, i, pes, block, down, up);
         Communication counted;
-        Ring ring(session, counted, pes, block);
+        Ring ring(session, counted, static_cast<std::uint32_t>(pes), block);
         const Buffer<float> own = filled(session, "own", random_words(random, pes * block));
         session.clear_profile();
         ring.load(own, block, 0);
@@ -138,7 +138,7 @@ TEST_CASE("a band at the end of the share loads the words that are left and keep
         const std::size_t band = 1 + random_below(random, share), begin = random_below(random, share);
         CAPTURE(kSeed, i, pes, share, band, begin);
         Communication counted;
-        Ring ring(session, counted, pes, band);
+        Ring ring(session, counted, static_cast<std::uint32_t>(pes), band);
         const Bits mine = random_words(random, pes * share), stale = random_words(random, pes * band);
         const Buffer<float> own = filled(session, "own", mine);
         ring.load(filled(session, "stale", stale), band, 0);
@@ -174,7 +174,7 @@ TEST_CASE("what PEs send over the bus is counted as the words that were copied",
         const std::uint32_t sent = random_below(random, 5), told = random_below(random, 5);
         CAPTURE(kSeed, i, pes, share, words, sent, told);
         Communication counted;
-        Bus bus(session, counted);
+        Bus bus(session, counted, static_cast<std::uint32_t>(pes));
         const Bits mine = random_words(random, pes * share);
         const Buffer<float> own = filled(session, "own", mine);
         Buffer<float> blocks = filled(session, "blocks", random_words(random, pes * words));

@@ -3,7 +3,6 @@
 #include <numeric>
 
 #include "host/study/arrays.hpp"
-#include "host/study/over_bound.hpp"
 #include "host/study/static_vs_dynamic.hpp"
 #include "host/study/studies.hpp"
 #include "tests/document.hpp"
@@ -134,37 +133,6 @@ TEST_CASE("the verdict counts what it says", "[study]") {
     CHECK(both.static_inadequate == 3);
 }
 
-TEST_CASE("over pictures the best static strategy and the best hybrid that pays are those of each picture", "[study]") {
-    std::mt19937 random(3);
-    const std::uint32_t size = 32, pes = 40;
-    const CostImage a = random_costs(random, size), b = random_costs(random, size), c = random_costs(random, size);
-    const std::vector<std::uint64_t> overheads = {5, 200};
-    const auto all = over_bound_of("three", {&a, &b, &c}, pes, overheads);
-    REQUIRE(all.size() == 2);
-    for (std::size_t i = 0; i < 2; ++i) {
-        std::vector<double> fixed, hybrid, saved;
-        for (const CostImage* image : {&a, &b, &c}) {
-            double least_fixed = 1e9, least_hybrid = 1e9;
-            for (const Strategy& s : strategies(size, pes, overheads[i])) {
-                const double over = run_strategy(*image, s).over_bound;
-                if (s.kind == StrategyKind::kStatic) least_fixed = std::min(least_fixed, over);
-                if (s.kind == StrategyKind::kHybrid && s.plan.overhead > 0) least_hybrid = std::min(least_hybrid, over);
-            }
-            fixed.push_back(least_fixed), hybrid.push_back(least_hybrid);
-            saved.push_back(100 - 100 * least_hybrid / least_fixed);
-        }
-        CHECK(all[i].fixed.mean == Approx(estimate_of(fixed).mean));
-        CHECK(all[i].hybrid.mean == Approx(estimate_of(hybrid).mean));
-        CHECK(all[i].hybrid.half_width == Approx(estimate_of(hybrid).half_width));
-        CHECK(all[i].saved.mean == Approx(estimate_of(saved).mean));
-        CHECK(all[i].saved.half_width == Approx(estimate_of(saved).half_width));
-    }
-    const auto at = [](double mean, double half) { return OverBound{"", 1, {mean, half, 4}, {mean, half, 4}, {}}; };
-    CHECK((at(1.3, 0.1).static_far() && at(1.3, 0.1).hybrid_far() && !at(1.3, 0.1).static_near()));
-    CHECK((at(1.05, 0.05).static_near() && at(1.05, 0.05).hybrid_near() && !at(1.05, 0.05).hybrid_far()));
-    CHECK_FALSE((at(1.2, 0.15).static_far() || at(1.2, 0.15).static_near()));
-}
-
 TEST_CASE("findings branch with the figures", "[study]") {
     const auto of = [](const SceneOutcomes& scene) { return dynamic_findings({scene}, 5); };
     CHECK(holds(of(by_hand({1.5, 2}, {1.05, 1.1})), "from 128 PEs on holds here: in 2 of 2"));
@@ -203,9 +171,7 @@ TEST_CASE("the study of static and dynamic distribution is whole", "[study]") {
     check_page(page);
     CHECK(read_back(page.settings)["pes"] == std::vector<int>{128, 256, 512, 1024});
     CHECK(read_back(page.settings)["scenes"].size() == 3);
-    CHECK(page.plots.size() == 7);
-    REQUIRE(page.table("static-vs-dynamic-views").rows.size() == 3 * 4);
-    CHECK(page.value("static-vs-dynamic-views", 0, "views") == 8);
+    CHECK(page.plots.size() == 6);
     REQUIRE(page.table("static-vs-dynamic-factors").rows.size() == 3);  // 1, the clock's, 8
     CHECK(page.value("static-vs-dynamic-factors", 0, "request") == 3695);
     CHECK(page.value("static-vs-dynamic-factors", 2, "request") == 462);  // 461.9

@@ -94,13 +94,12 @@ TEST_CASE("the default is shorter on machines of very many nodes", "[torus]") {
 }
 
 TEST_CASE("queues and boxes that the device cannot hold are refused with those that it can", "[torus]") {
-    DeviceInfo device;
-    device.name = "a small device";
+    DeviceMemory device;
     // 64 nodes: boxes of 64 x 6 x (1 + 1000) packets of 64 bytes are the largest buffer.
-    device.max_allocation_bytes = 64ull * 6 * 1001 * 64;
-    device.global_memory_bytes = std::uint64_t{1} << 40;
+    device.one_buffer = 64ull * 6 * 1001 * 64;
+    device.all = std::uint64_t{1} << 40;
     const auto told = [&](std::uint32_t queue) {
-        return refusal_of([&] { check_device_memory("s.nff", buffers_for(queue), 64, device); });
+        return refusal_of([&] { check_device_memory("s.nff", buffers_for(queue), 64, "a small device", device); });
     };
     CHECK(told(4000) == "not refused");
     CHECK(told(4003) == "not refused");
@@ -108,9 +107,9 @@ TEST_CASE("queues and boxes that the device cannot hold are refused with those t
           "s.nff: queues of 4004 packets and their boxes in 64 nodes do not fit into a small device; use --queue 2002 "
           "or fewer nodes");
     // All together: queues, boxes on both ends of rays and of returns.
-    device.global_memory_bytes = 64ull * 64 * 4000 + 3 * device.max_allocation_bytes;
+    device.all = 64ull * 64 * 4000 + 3 * device.one_buffer;
     CHECK(told(4000) == "not refused");
-    --device.global_memory_bytes;
+    --device.all;
     CHECK_THAT(told(4000), Catch::Contains("use --queue 2000 or fewer nodes"));
 }
 

@@ -24,7 +24,8 @@ class Boxes {
           nodes_(raya_nodes(torus)),
           capacity_(capacity),
           words_(words),
-          links_(session, torus, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
+          share_(torus),
+          links_(session, share_, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
           status_(nodes_),
           out_(links_.outboxes().size(), kPoison),
           in_(out_.size()) {
@@ -145,6 +146,7 @@ class Boxes {
     Session& session_;
     raya_torus torus_;
     std::uint32_t nodes_, capacity_, words_;
+    NodeShare share_;
     LinkExchange links_;
     NodeStatus status_;
     std::vector<std::uint32_t> out_, in_;
@@ -184,7 +186,8 @@ TEST_CASE("a long box and short ones are copied apart where that moves fewer byt
     Session session(choose_device(""));
     constexpr std::uint32_t kCapacity = 4096, kWords = RAYA_PACKET_WORDS, kBox = (1 + kCapacity) * kWords;
     const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
-    LinkExchange links(session, torus, kCapacity, {"test", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
+    const NodeShare share(torus);
+    LinkExchange links(session, share, kCapacity, {"test", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
     links.clear();
     NodeStatus status(4);
     std::vector<std::uint32_t> out(links.outboxes().size()), in(out.size());
@@ -213,7 +216,8 @@ TEST_CASE("a long box and short ones are copied apart where that moves fewer byt
 TEST_CASE("links charge for messages, whatever packets they move", "[torus]") {
     Session session(choose_device(""));
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
-    LinkExchange links(session, torus, 8,
+    const NodeShare share(torus);
+    LinkExchange links(session, share, 8,
                        {"test", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX, 6,
                         RAYA_STATUS_RETURN_CHARGED});
     links.clear();

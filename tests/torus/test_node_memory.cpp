@@ -60,7 +60,8 @@ class NodeCheck {
     // Compares corners and normals, then makes the two "at" words alike.
     void outline(Words& own, const Words& theirs) {
         const std::size_t corners = theirs[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
-        if (node_.section(own[RAYA_POLYGON_CORNERS_AT], corners) != job_section(theirs[RAYA_POLYGON_CORNERS_AT], corners))
+        if (node_.section(own[RAYA_POLYGON_CORNERS_AT], corners) !=
+            job_section(theirs[RAYA_POLYGON_CORNERS_AT], corners))
             FAIL("corners");
         if ((own[RAYA_POLYGON_NORMALS_AT] == 0) != (theirs[RAYA_POLYGON_NORMALS_AT] == 0)) FAIL("polygon or patch");
         if (theirs[RAYA_POLYGON_NORMALS_AT] != 0 && node_.section(own[RAYA_POLYGON_NORMALS_AT], RAYA_PATCH_WORDS) !=

@@ -1,0 +1,203 @@
+// The transport on MPI: a module, loaded under mpirun alone, so that a plain start does not pay for MPI's libraries.
+// What waits looks at its requests in turn, since MPI's own waits have no end and let nobody hear of a rank that has
+// failed.
+#define OMPI_SKIP_MPICXX  // the C++ bindings, which MPI has given up
+#define MPICH_SKIP_MPICXX
+#include "host/ranks/mpi_module.hpp"
+
+#include <fmt/core.h>
+#include <mpi.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <climits>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "host/error.hpp"
+#include "host/ranks/transport.hpp"
+
+namespace raya {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Counts of MPI are ints.
+constexpr std::size_t kPiece = std::size_t{1} << 30;
+constexpr int kFailureTag = 1;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void check(int result, const char* call) {
+    if (result == MPI_SUCCESS) return;
+    std::array<char, MPI_MAX_ERROR_STRING> text{};
+    int length = 0;
+    MPI_Error_string(result, text.data(), &length);
+    throw DeviceError(fmt::format("{} failed: {}", call, text.data()));
+}
+
+// "Open MPI v4.1.4, package: ..." or "MPICH Version: 4.0.2 ...": up to what says how it was built.
+std::string library_name() {
+    std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
+    int length = 0;
+    MPI_Get_library_version(text.data(), &length);
+    std::string name(text.data(), static_cast<std::size_t>(length));
+    name = name.substr(0, std::min(name.find(','), name.find('\n')));
+    std::replace(name.begin(), name.end(), '\t', ' ');
+    name.erase(std::unique(name.begin(), name.end(), [](char a, char b) { return a == ' ' && b == ' '; }), name.end());
+    while (name.ends_with(' ')) name.pop_back();
+    return name;
+}
+
+class MpiTransport final : public Transport {
+  public:
+    explicit MpiTransport(double limit_s) : limit_s_(limit_s) {
+        int provided = 0;
+        check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+        // A communicator each for what ranks send and for what goes wrong.
+        for (MPI_Comm* comm : {&comm_, &failures_}) {
+            check(MPI_Comm_dup(MPI_COMM_WORLD, comm), "MPI_Comm_dup");
+            check(MPI_Comm_set_errhandler(*comm, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+        }
+        MPI_Comm_rank(comm_, &rank_);
+        MPI_Comm_size(comm_, &count_);
+        std::array<char, HOST_NAME_MAX + 1> name{};
+        ::gethostname(name.data(), name.size() - 1);
+        host_ = name.data();
+        library_ = library_name();
+    }
+
+    std::uint32_t rank() const override { return static_cast<std::uint32_t>(rank_); }
+    std::uint32_t count() const override { return static_cast<std::uint32_t>(count_); }
+    std::string host() const override { return host_; }
+    std::string library() const override { return library_; }
+
+    void broadcast(std::span<std::byte> bytes) override {
+        for_pieces(bytes, [&](std::span<std::byte> piece) {
+            check(MPI_Ibcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, 0, comm_, &next_request()),
+                  "MPI_Ibcast");
+            wait();
+        });
+    }
+
+    void all_gather(std::span<const std::byte> own, std::span<std::byte> all,
+                    std::span<const std::size_t> sizes) override {
+        if (all.size() > INT_MAX) throw std::length_error("all_gather: more than 2^31 bytes");
+        std::vector<int> counts, starts;
+        int end = 0;
+        for (const std::size_t size : sizes) {
+            counts.push_back(static_cast<int>(size));
+            starts.push_back(end);
+            end += counts.back();
+        }
+        check(MPI_Iallgatherv(own.data(), static_cast<int>(own.size()), MPI_BYTE, all.data(), counts.data(),
+                              starts.data(), MPI_BYTE, comm_, &next_request()),
+              "MPI_Iallgatherv");
+        wait();
+    }
+
+    // Messages of one pair and tag arrive in the order in which they were sent, so pieces do.
+    void start(std::span<const Outgoing> out, std::span<const Incoming> in) override {
+        for (const Incoming& m : in)
+            for_pieces(m.bytes, [&](std::span<std::byte> piece) {
+                check(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, static_cast<int>(m.from), m.tag,
+                                comm_, &next_request()),
+                      "MPI_Irecv");
+            });
+        for (const Outgoing& m : out)
+            for_pieces(m.bytes, [&](std::span<const std::byte> piece) {
+                check(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, static_cast<int>(m.to), m.tag,
+                                comm_, &next_request()),
+                      "MPI_Isend");
+            });
+    }
+
+    void wait() override {
+        if (!complete(requests_, limit_s_))
+            throw RankFailure(
+                fmt::format(
+                    "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for one that hangs, "
+                    "or let ranks wait longer with RAYA_RANK_TIMEOUT=SECONDS",
+                    rank_, host_, limit_s_),
+                3);
+        requests_.clear();
+    }
+
+    void report_failure(const std::string& text, int code) override {
+        constexpr double kPatience = 4;  // seconds until this rank speaks itself
+        std::string message = fmt::format("{} {}", code, text);
+        std::vector<MPI_Request> sent(1);
+        const int size = static_cast<int>(message.size());
+        if (MPI_Isend(message.data(), size, MPI_BYTE, 0, kFailureTag, failures_, sent.data()) != MPI_SUCCESS) return;
+        const Clock::time_point start = Clock::now();
+        complete(sent, kPatience);
+        // Rank 0 ends this process.
+        std::this_thread::sleep_for(std::chrono::duration<double>(kPatience - seconds_since(start)));
+    }
+
+    [[noreturn]] void abort(int code) override {
+        MPI_Abort(MPI_COMM_WORLD, code);
+        std::_Exit(code);  // not reached, but MPI does not promise that
+    }
+
+    void close() override { MPI_Finalize(); }
+
+  private:
+    template <class Byte, class Call>
+    static void for_pieces(std::span<Byte> bytes, Call&& call) {
+        for (std::size_t begin = 0; begin < bytes.size(); begin += kPiece)
+            call(bytes.subspan(begin, std::min(kPiece, bytes.size() - begin)));
+    }
+
+    MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
+
+    // False where it takes longer than `limit_s`. Ranks may have to share cores: who waits long steps aside.
+    bool complete(std::vector<MPI_Request>& requests, double limit_s) {
+        constexpr int kEager = 2000;
+        const Clock::time_point start = Clock::now();
+        for (int tries = 0;; ++tries) {
+            int done = 0;
+            check(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE),
+                  "MPI_Testall");
+            if (done) return true;
+            if (tries < kEager) {
+                ::sched_yield();
+                continue;
+            }
+            if (rank_ == 0) hear_failures();
+            if (seconds_since(start) > limit_s) return false;
+            std::this_thread::sleep_for(std::chrono::microseconds(50));
+        }
+    }
+
+    void hear_failures() {
+        int there = 0;
+        MPI_Status status;
+        check(MPI_Iprobe(MPI_ANY_SOURCE, kFailureTag, failures_, &there, &status), "MPI_Iprobe");
+        if (!there) return;
+        int size = 0;
+        MPI_Get_count(&status, MPI_BYTE, &size);
+        std::string message(static_cast<std::size_t>(size), ' ');
+        MPI_Recv(message.data(), size, MPI_BYTE, status.MPI_SOURCE, kFailureTag, failures_, MPI_STATUS_IGNORE);
+        const std::size_t space = message.find(' ');
+        throw RankFailure(message.substr(space + 1), std::atoi(message.c_str()));
+    }
+
+    const double limit_s_;
+    MPI_Comm comm_ = MPI_COMM_NULL, failures_ = MPI_COMM_NULL;
+    int rank_ = 0, count_ = 1;
+    std::string host_, library_;
+    std::vector<MPI_Request> requests_;
+};
+
+}  // namespace
+}  // namespace raya
+
+extern "C" __attribute__((visibility("default"))) raya::Transport* raya_open_mpi(double limit_s) {
+    return new raya::MpiTransport(limit_s);
+}

@@ -1,0 +1,148 @@
+#include "host/ranks/ranks.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+
+#include "host/files/say.hpp"
+
+namespace raya {
+namespace {
+
+class NoTransport final : public Transport {
+  public:
+    std::uint32_t rank() const override { return 0; }
+    std::uint32_t count() const override { return 1; }
+    std::string host() const override { return {}; }
+    std::string library() const override { return {}; }
+    void broadcast(std::span<std::byte>) override {}
+    void all_gather(std::span<const std::byte> own, std::span<std::byte> all, std::span<const std::size_t>) override {
+        std::copy(own.begin(), own.end(), all.begin());
+    }
+    void start(std::span<const Outgoing>, std::span<const Incoming>) override {}
+    void wait() override {}
+    void report_failure(const std::string&, int) override {}
+    [[noreturn]] void abort(int code) override { std::exit(code); }
+    void close() override {}
+};
+
+std::uint64_t bytes_of(std::span<const Outgoing> out) {
+    std::uint64_t bytes = 0;
+    for (const Outgoing& message : out) bytes += message.bytes.size();
+    return bytes;
+}
+
+}  // namespace
+
+Ranks& Ranks::alone() {
+    static Ranks only(std::make_unique<NoTransport>());
+    return only;
+}
+
+Ranks::Ranks(std::unique_ptr<Transport> transport)
+    : transport_(std::move(transport)), rank_(transport_->rank()), count_(transport_->count()) {
+    find_host();
+}
+
+void Ranks::find_host() {
+    constexpr std::size_t kLongest = 256;
+    std::array<char, kLongest> own{};
+    host().copy(own.data(), kLongest);
+    const std::vector<std::array<char, kLongest>> hosts = all_gather(own);
+    for (std::uint32_t rank = 0; rank < count_; ++rank)
+        if (hosts[rank] == own) host_ranks_.push_back(rank);
+    of_host_ = static_cast<std::uint32_t>(host_ranks_.size());
+    on_host_ =
+        static_cast<std::uint32_t>(std::find(host_ranks_.begin(), host_ranks_.end(), rank_) - host_ranks_.begin());
+}
+
+void Ranks::broadcast(std::string& text) {
+    std::vector<char> letters(text.begin(), text.end());
+    broadcast(letters);
+    text.assign(letters.begin(), letters.end());
+}
+
+std::vector<std::string> Ranks::gather(const std::string& text) {
+    const std::vector<std::size_t> sizes = all_sizes(text.size());
+    const std::vector<char> letters = gather(std::span<const char>(text), sizes);
+    std::vector<std::string> texts;
+    auto begin = letters.begin();
+    for (std::size_t rank = 0; rank < (first() ? sizes.size() : 0); ++rank) {
+        const auto end = begin + static_cast<std::ptrdiff_t>(sizes[rank]);
+        texts.emplace_back(begin, end);
+        begin = end;
+    }
+    return texts;
+}
+
+template <class Call>
+void Ranks::timed(Call&& call) {
+    const Clock::time_point start = Clock::now();
+    call();
+    traffic_.waiting_s += std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void Ranks::broadcast_bytes(std::span<std::byte> bytes) {
+    traffic_.messages += many() && first();
+    traffic_.bytes += many() && first() ? bytes.size() : 0;
+    timed([&] { transport_->broadcast(bytes); });
+}
+
+void Ranks::gather_bytes(std::span<const std::byte> own, std::span<std::byte> all, std::span<const std::size_t> sizes) {
+    traffic_.messages += many();
+    traffic_.bytes += many() ? own.size() : 0;
+    timed([&] { transport_->all_gather(own, all, sizes); });
+}
+
+std::vector<std::size_t> Ranks::all_sizes(std::size_t own) { return all_gather(own); }
+
+void Ranks::start(std::span<const Outgoing> out, std::span<const Incoming> in) {
+    traffic_.messages += out.size();
+    traffic_.bytes += bytes_of(out);
+    transport_->start(out, in);
+}
+
+void Ranks::wait() {
+    timed([&] { transport_->wait(); });
+}
+
+void Ranks::wait_for_first_on_host() {
+    const char done = 1;
+    char told = 0;
+    std::vector<Outgoing> out;
+    std::vector<Incoming> in;
+    if (on_host_ == 0)
+        for (std::uint32_t i = 1; i < of_host_; ++i)
+            out.push_back({host_ranks_[i], kHostTag, std::as_bytes(std::span(&done, 1))});
+    else
+        in.push_back({host_ranks_[0], kHostTag, std::as_writable_bytes(std::span(&told, 1))});
+    start(out, in);
+    wait();
+}
+
+int Ranks::fail(const std::string& text, int code) {
+    if (!many()) {
+        say(fmt::format("raya: {}\n", text));
+        return code;
+    }
+    return end_all(fmt::format("rank {} on {}: {}", rank_, host(), text), code);
+}
+
+int Ranks::fail(const RankFailure& failure) { return end_all(failure.what(), failure.code); }
+
+int Ranks::end_all(const std::string& whole, int code) {
+    if (!first()) transport_->report_failure(whole, code);
+    say(fmt::format("raya: {}\n", whole));
+    transport_->abort(code);
+    return code;
+}
+
+int Ranks::close(int code) {
+    if (!many()) return code;
+    const std::vector<int> codes = all_gather(code);
+    transport_->close();
+    return *std::max_element(codes.begin(), codes.end());
+}
+
+}  // namespace raya

@@ -1,0 +1,151 @@
+// The ranks that share a render: processes, each with a device of its own. A program that runs alone is the only one.
+#pragma once
+#include <chrono>
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "host/ranks/transport.hpp"
+
+namespace raya {
+
+template <class T>
+concept Sendable = std::is_trivially_copyable_v<T>;
+
+/// What a rank handed to its transport and how long it waited there. A broadcast is one message of rank 0, what all
+/// gather one of each.
+struct RankTraffic {
+    std::uint64_t messages = 0, bytes = 0;
+    double waiting_s = 0;
+};
+
+/// Calls are made by all ranks in the same order. Alone they do nothing: what rank 0 sends to all is there already.
+class Ranks {
+  public:
+    /// The only rank.
+    static Ranks& alone();
+
+    /// Learns which ranks share a host.
+    explicit Ranks(std::unique_ptr<Transport> transport);
+
+    std::uint32_t rank() const { return rank_; }
+    std::uint32_t count() const { return count_; }
+    bool first() const { return rank_ == 0; }  // rank 0 reads, prints and writes
+    bool many() const { return count_ > 1; }
+    std::uint32_t on_host() const { return on_host_; }  // this rank's number among those of its host
+    std::uint32_t of_host() const { return of_host_; }  // how many there are
+    std::string host() const { return transport_->host(); }
+    std::string library() const { return transport_->library(); }
+
+    /// A value, the elements of a vector, a text of rank 0 to all.
+    template <Sendable T>
+    void broadcast(T& value) {
+        broadcast_bytes(std::as_writable_bytes(std::span(&value, 1)));
+    }
+    template <Sendable T>
+    void broadcast(std::vector<T>& values) {
+        std::uint64_t size = values.size();
+        broadcast(size);
+        values.resize(size);
+        broadcast_bytes(std::as_writable_bytes(std::span(values)));
+    }
+    void broadcast(std::string& text);
+
+    /// What every rank has, in the order of ranks.
+    template <Sendable T>
+    std::vector<T> all_gather(std::span<const T> own) {
+        return all_gather(own, all_sizes(own.size()));
+    }
+    template <Sendable T>
+    std::vector<T> all_gather(const T& own) {
+        return all_gather(std::span(&own, 1), std::vector<std::size_t>(count_, 1));
+    }
+    /// `sizes` [rank]: elements of each.
+    template <Sendable T>
+    std::vector<T> all_gather(std::span<const T> own, std::vector<std::size_t> sizes) {
+        std::size_t all = 0;
+        for (std::size_t& size : sizes) all += std::exchange(size, size * sizeof(T));
+        std::vector<T> gathered(all);
+        gather_bytes(std::as_bytes(own), std::as_writable_bytes(std::span(gathered)), sizes);
+        return gathered;
+    }
+    /// The same in rank 0 alone, where it may be large; elsewhere nothing.
+    template <Sendable T>
+    std::vector<T> gather(std::span<const T> own, const std::vector<std::size_t>& sizes) {
+        if (!first()) {
+            send(0, own);
+            return {};
+        }
+        std::vector<T> gathered(own.begin(), own.end());
+        for (std::uint32_t rank = 1; rank < count_; ++rank) {
+            gathered.resize(gathered.size() + sizes[rank]);
+            receive(rank, std::span(gathered).last(sizes[rank]));
+        }
+        return gathered;
+    }
+    std::vector<std::string> gather(const std::string& text);
+
+    /// Elements to one rank, which asks this one for as many.
+    template <Sendable T>
+    void send(std::uint32_t to, std::span<const T> values) {
+        const Outgoing out{to, kPlainTag, std::as_bytes(values)};
+        start({&out, 1}, {});
+        wait();
+    }
+    template <Sendable T>
+    void receive(std::uint32_t from, std::span<T> values) {
+        const Incoming in{from, kPlainTag, std::as_writable_bytes(values)};
+        start({}, {&in, 1});
+        wait();
+    }
+
+    /// Several at once, as Transport has it.
+    void start(std::span<const Outgoing> out, std::span<const Incoming> in);
+    void wait();
+
+    /// Does the work in one rank of each host, then in the others: what the first leaves in a cache they find there.
+    template <std::invocable Work>
+    void one_first_on_each_host(Work&& work) {
+        if (on_host_ == 0) work();
+        wait_for_first_on_host();
+        if (on_host_ > 0) work();
+    }
+
+    const RankTraffic& traffic() const { return traffic_; }
+
+    /// Says what went wrong here, once, and ends all ranks with the code. Returns the code where there is no other
+    /// rank.
+    int fail(const std::string& text, int code);
+
+    /// The same for what another rank has told, or what is known of it.
+    int fail(const RankFailure& failure);
+
+    /// All ranks are done; the exit code of the one that has the greatest.
+    int close(int code);
+
+  private:
+    int end_all(const std::string& whole, int code);
+    static constexpr int kPlainTag = 0, kHostTag = 1;
+    using Clock = std::chrono::steady_clock;
+
+    void broadcast_bytes(std::span<std::byte> bytes);
+    void gather_bytes(std::span<const std::byte> own, std::span<std::byte> all, std::span<const std::size_t> sizes);
+    std::vector<std::size_t> all_sizes(std::size_t own);
+    void find_host();
+    void wait_for_first_on_host();
+    template <class Call>
+    void timed(Call&& call);
+
+    std::unique_ptr<Transport> transport_;
+    std::uint32_t rank_, count_;
+    std::uint32_t on_host_ = 0, of_host_ = 1;
+    std::vector<std::uint32_t> host_ranks_;  // of this host, ascending
+    RankTraffic traffic_;
+};
+
+}  // namespace raya

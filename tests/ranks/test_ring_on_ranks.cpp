@@ -1,0 +1,122 @@
+// The ring divided over ranks: pixels, costs, marks, loads and counts are those of one rank, to the last bit.
+#include <catch2/catch.hpp>
+#include <mutex>
+
+#include "host/error.hpp"
+#include "tests/ranks/thread_ranks.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/ring/small_mapping.hpp"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+/// What rank 0 makes of the settings; every rank has a session of its own.
+RingResult render_on(std::uint32_t count, const Scene& scene, const RingSettings& settings) {
+    RingResult result;
+    on_ranks(count, [&](Ranks& ranks) {
+        Session session(choose_device(""));
+        const Scene nothing;
+        RingRenderer renderer(session, ranks.first() ? scene : nothing, settings, ranks);
+        RingResult own = renderer.render();
+        if (ranks.first())
+            result = std::move(own);
+        else if (!own.image.rgb.empty() || !own.mask.rgb.empty())
+            throw std::logic_error("a rank that writes nothing holds an image");
+    });
+    return result;
+}
+
+void check_same(const RingResult& one, const RingResult& many) {
+    CHECK(one.image.rgb == many.image.rgb);
+    CHECK(one.mask.rgb == many.mask.rgb);
+    CHECK(one.recomputed == many.recomputed);
+    CHECK(one.all.events == many.all.events);
+    CHECK(one.all.load.per_pe == many.all.load.per_pe);
+    CHECK(one.requests == many.requests);
+    REQUIRE(one.phases.size() == many.phases.size());
+    for (std::size_t i = 0; i < one.phases.size(); ++i) {
+        CHECK(one.phases[i].events == many.phases[i].events);
+        CHECK(one.phases[i].load.per_pe == many.phases[i].load.per_pe);
+        CHECK(one.phases[i].cost().cycles == many.phases[i].cost().cycles);
+    }
+    const Communication &a = one.communication, &b = many.communication;
+    CHECK(std::tie(a.broadcasts, a.broadcast_words, a.rotations, a.rotation_words, a.gathers, a.gather_words,
+                   a.transfers, a.transfer_words, a.pe_broadcasts, a.pe_broadcast_words) ==
+          std::tie(b.broadcasts, b.broadcast_words, b.rotations, b.rotation_words, b.gathers, b.gather_words,
+                   b.transfers, b.transfer_words, b.pe_broadcasts, b.pe_broadcast_words));
+    CHECK(one.scale.exponent == many.scale.exponent);
+    CHECK(one.pe_memory.bytes() == many.pe_memory.bytes());
+}
+
+raya_mapping random_mapping(SplitMix& random) {
+    const raya_mapping m = small_mapping(random, 12);
+    return random.next() % 2 ? m : of_kind(random, m, RAYA_ROWS + random_below(random, 5));
+}
+
+Antialias random_antialias(SplitMix& random) {
+    Antialias a;
+    const AntialiasMethod methods[] = {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample};
+    const ExchangeWay ways[] = {ExchangeWay::kRing, ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast};
+    a.method = methods[random_below(random, 3)];
+    a.exchange = ways[random_below(random, 4)];
+    return a;
+}
+
+}  // namespace
+
+TEST_CASE("one image, and one load of each PE, on any number of ranks", "[ranks]") {
+    constexpr std::uint64_t kSeed = 4711;
+    SplitMix random(kSeed);
+    std::vector<Scene> scenes;
+    for (const std::string& name : project_scenes()) scenes.push_back(project_scene(name));
+    std::uint32_t cases = 0, uneven = 0;
+    for (std::uint32_t i = 0; i < quick_cases(24, 120); ++i) {
+        const Scene& scene = scenes[i % scenes.size()];
+        RingSettings settings = settings_of({.format = i % 3 ? "fp32" : "spa22"});
+        settings.mapping = random_mapping(random);
+        settings.antialias = random_antialias(random);
+        settings.keep_costs = true;
+        const AccelKind kinds[] = {AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh};
+        settings.accel.kind = kinds[random_below(random, 3)];
+        settings.device_pixels = random.next() % 3 ? 1 << 22 : 1 + random_below(random, 60);
+        if (random.next() % 4 == 0) settings.machine.pe_memory_bytes = std::uint64_t{1} << 20;
+        Session session(choose_device(""));
+        const RingResult one = RingRenderer(session, scene, settings).render();
+        for (const std::uint32_t count : {1u, 2u, 3u, 4u, 7u, 8u}) {
+            if (count > settings.mapping.pes) continue;
+            CAPTURE(kSeed, i, scene.name, count, settings.mapping.pes, settings.mapping.width, settings.mapping.height,
+                    settings.mapping.kind);
+            check_same(one, render_on(count, scene, settings));
+            uneven += settings.mapping.pes % count != 0;
+            ++cases;
+        }
+    }
+    CHECK(cases > 60);
+    CHECK(uneven > 10);
+}
+
+TEST_CASE("more ranks than PEs are refused with both numbers", "[ranks]") {
+    RingSettings settings = settings_of({.width = 8, .height = 4, .pes = 3, .offset = 0});
+    CHECK_THROWS_WITH(render_on(4, project_scene("spheres"), settings),
+                      Catch::Contains("4 ranks for 3 PEs") && Catch::Contains("start 3 ranks or fewer"));
+}
+
+TEST_CASE("every PE has a rank, consecutive ones the same or the next", "[ranks]") {
+    for (const std::uint32_t pes : {1u, 2u, 5u, 8u, 256u, 1000u, 65'536u})
+        for (std::uint32_t ranks = 1; ranks <= std::min(pes, 9u); ++ranks) {
+            CAPTURE(pes, ranks);
+            std::uint32_t next = 0;
+            for (std::uint32_t rank = 0; rank < ranks; ++rank) {
+                const PeSegment s = segment_of(pes, ranks, rank);
+                CHECK(s.first == next);
+                CHECK((s.count == pes / ranks || s.count == pes / ranks + 1));
+                CHECK(rank_of_pe(pes, ranks, s.first) == rank);
+                CHECK(rank_of_pe(pes, ranks, s.first + s.count - 1) == rank);
+                next += s.count;
+            }
+            CHECK(next == pes);
+        }
+}
+
+}  // namespace raya

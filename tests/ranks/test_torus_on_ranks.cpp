@@ -1,0 +1,190 @@
+// The torus divided over ranks: image, counts, loads, supersteps and the traffic are those of one rank.
+#include <catch2/catch.hpp>
+
+#include "host/torus/node_share.hpp"
+#include "host/torus/standstill.hpp"
+#include "tests/ranks/thread_ranks.hpp"
+#include "tests/thorough.hpp"
+#include "tests/torus/random_torus.hpp"
+#include "tests/torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+struct Told {
+    TorusResult result;
+    std::string packets;
+};
+
+std::string text_of(const PacketRecord& r) {
+    return fmt::format("{} {} {} {} {:x} {:x}\n", r.superstep, r.source, r.destination, r.words, r.head.pixel,
+                       r.head.state);
+}
+
+Told render_on(Ranks& ranks, const Scene& scene, const TorusSettings& settings) {
+    Session session(choose_device(""));
+    Told told;
+    const Scene nothing;
+    TorusRenderer renderer(session, ranks.first() ? scene : nothing, settings, ranks);
+    told.result = renderer.render({}, [&](const PacketRecord& r) { told.packets += text_of(r); });
+    return told;
+}
+
+void check_same(const Told& one, const Told& many) {
+    const TorusResult &a = one.result, &b = many.result;
+    CHECK(a.image.rgb == b.image.rgb);
+    CHECK(a.events == b.events);
+    CHECK(a.load.per_pe == b.load.per_pe);
+    CHECK(a.made == b.made);
+    CHECK(a.ended == b.ended);
+    CHECK(a.returns == b.returns);
+    CHECK(a.hops == b.hops);
+    CHECK(a.link_words == b.link_words);
+    CHECK(a.link_packets == b.link_packets);
+    CHECK(a.queue_max == b.queue_max);
+    CHECK(a.node_bytes == b.node_bytes);
+    REQUIRE(a.supersteps.size() == b.supersteps.size());
+    for (std::size_t i = 0; i < a.supersteps.size(); ++i) {
+        CHECK(a.supersteps[i].most_cycles == b.supersteps[i].most_cycles);
+        CHECK(a.supersteps[i].most_link_words == b.supersteps[i].most_link_words);
+        CHECK(a.supersteps[i].live == b.supersteps[i].live);
+    }
+    CHECK(one.packets == many.packets);
+}
+
+TorusCase random_case(SplitMix& random, const Scene& scene) {
+    TorusCase c{.group = 1};
+    do c.nodes = random_sides(random, 4);
+    while (c.nodes[0] * c.nodes[1] * c.nodes[2] > 40);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        c.voxels[axis] = random.next() % 2 ? c.nodes[axis] : 1 + random_below(random, 7);
+    c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
+    c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
+    c.packets = random_charge(random);
+    const std::uint32_t shortest = raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), c.bounces);
+    c.queue = random.next() % 2 ? 0 : shortest * (1 + random_below(random, 20));
+    return c;
+}
+
+}  // namespace
+
+TEST_CASE("nodes are divided into bricks, whole, even and with the root in rank 0", "[ranks]") {
+    constexpr std::uint64_t kSeed = 99;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 300; ++i) {
+        const raya_torus torus = random_torus(random, 6);
+        const std::uint32_t nodes = raya_nodes(torus), ranks = 1 + random_below(random, std::min(nodes, 12u));
+        CAPTURE(kSeed, i, torus_text(torus), ranks);
+        const std::vector<std::uint32_t> rank_of = ranks_of_nodes(torus, ranks);
+        CHECK(rank_of[RAYA_ROOT] == 0);
+        for (std::uint32_t rank = 0; rank < ranks; ++rank) {
+            raya_place least{{~0u, ~0u, ~0u}}, most{};
+            std::uint32_t count = 0;
+            for (std::uint32_t node = 0; node < nodes; ++node) {
+                if (rank_of[node] != rank) continue;
+                const raya_place p = raya_torus_place(torus, node);
+                for (int axis = 0; axis < 3; ++axis) {
+                    least.at[axis] = std::min(least.at[axis], p.at[axis]);
+                    most.at[axis] = std::max(most.at[axis], p.at[axis]);
+                }
+                ++count;
+            }
+            REQUIRE(count > 0);
+            std::uint32_t box = 1;
+            for (int axis = 0; axis < 3; ++axis) box *= 1 + most.at[axis] - least.at[axis];
+            CHECK(box == count);
+        }
+    }
+    const raya_torus even = make_torus({4, 4, 4}, Links::kTorus3d);
+    for (const std::uint32_t ranks : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
+        CHECK(NodeShare(even, ranks, 0).most_nodes() == 64 / ranks);
+    CHECK(NodeShare(even, 3, 0).most_nodes() <= 32);
+    CHECK(NodeShare(even, 7, 0).most_nodes() <= 16);
+}
+
+TEST_CASE("slots, borders and inboxes of a rank follow from the links of its nodes", "[ranks]") {
+    constexpr std::uint64_t kSeed = 5;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 200; ++i) {
+        const raya_torus torus = random_torus(random, 5);
+        const std::uint32_t ranks = 1 + random_below(random, std::min(raya_nodes(torus), 9u));
+        CAPTURE(kSeed, i, torus_text(torus), ranks);
+        for (std::uint32_t rank = 0; rank < ranks; ++rank) {
+            const NodeShare share(torus, ranks, rank);
+            for (std::uint32_t slot = 0; slot < share.nodes(); ++slot) {
+                const std::uint32_t node = share.own()[slot];
+                CHECK(share.slot_of(node) == slot);
+                bool inner = true;
+                for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+                    inner &= share.has(raya_link_end(torus, node, link));
+                CHECK(inner == (slot < share.inner()));
+            }
+            for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
+                std::vector<int> used(share.inboxes());
+                for (const std::uint32_t node : share.own()) {
+                    const std::uint32_t from = raya_link_end(torus, node, link ^ 1u), inbox = share.inbox(link, from);
+                    REQUIRE(inbox < share.inboxes());
+                    ++used[inbox];
+                }
+                CHECK(std::count_if(used.begin(), used.end(), [](int n) { return n > 1; }) == 0);
+            }
+        }
+    }
+}
+
+TEST_CASE("one image, one traffic: random toruses on 1 to 8 ranks", "[ranks]") {
+    constexpr std::uint64_t kSeed = 77;
+    SplitMix random(kSeed);
+    std::vector<Scene> scenes;
+    for (const std::string& name : project_scenes()) scenes.push_back(project_scene(name));
+    std::uint32_t cases = 0, stands = 0;
+    for (std::uint32_t i = 0; i < quick_cases(20, 100); ++i) {
+        const Scene& scene = scenes[i % scenes.size()];
+        const TorusCase c = random_case(random, scene);
+        CAPTURE(kSeed, i, scene.name, case_text(c));
+        const TorusSettings settings = settings_of(c);
+        const std::uint32_t counts[] = {2, 3, 4, 7, 8};
+        const std::uint32_t count = counts[i % 5];
+        if (count > raya_nodes(settings.torus)) continue;
+        Told one;
+        std::string stand;
+        try {
+            one = render_on(Ranks::alone(), scene, settings);
+        } catch (const Standstill& still) {
+            stand = still.what();
+        }
+        if (!stand.empty()) {
+            on_ranks(count, [&](Ranks& ranks) {
+                std::string told;
+                try {
+                    render_on(ranks, scene, settings);
+                } catch (const Standstill& still) {
+                    told = still.what();
+                }
+                if (ranks.first() && told != stand) throw std::logic_error(told + " is not " + stand);
+                if (told.empty()) throw std::logic_error("a rank does not see that the machine stands");
+            });
+            ++stands;
+            continue;
+        }
+        Told many;
+        on_ranks(count, [&](Ranks& ranks) {
+            Told own = render_on(ranks, scene, settings);
+            if (ranks.first())
+                many = std::move(own);
+            else if (!own.packets.empty() || !own.result.image.rgb.empty())
+                throw std::logic_error("only rank 0 is told");
+        });
+        check_same(one, many);
+        ++cases;
+    }
+    WARN(cases << " machines rendered, " << stands << " stood still");
+    CHECK(cases > 8);
+}
+
+TEST_CASE("more ranks than nodes are refused with both numbers", "[ranks]") {
+    CHECK_THROWS_WITH(ranks_of_nodes(make_torus({2, 1, 1}, Links::kTorus3d), 3),
+                      Catch::Contains("3 ranks for 2 nodes") && Catch::Contains("start 2 ranks or fewer"));
+}
+
+}  // namespace raya
