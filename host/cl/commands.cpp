@@ -43,6 +43,7 @@ cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::si
             "buffer; remedy: fewer pixels, a smaller scene, or another device",
             name, count, element_bytes, double(count) * double(element_bytes), info_.name, info_.max_allocation_bytes));
     }
+    bytes_taken_ += count * element_bytes;
     return guarded(fmt::format("allocating buffer '{}' ({} bytes)", name, count * element_bytes),
                    [&] { return cl::Buffer(context_, CL_MEM_READ_WRITE, count * element_bytes); });
 }

@@ -31,6 +31,9 @@ class Session {
 
     const DeviceInfo& device() const { return info_; }
 
+    /// Of all buffers that were made so far, those that are gone among them.
+    std::uint64_t bytes_taken() const { return bytes_taken_; }
+
     /// `count` > 0 elements; `name` is for messages. DeviceError if larger than the device allows for one buffer.
     template <class T>
     Buffer<T> buffer(const std::string& name, std::size_t count) const {
@@ -165,6 +168,7 @@ class Session {
 
     cl::Device device_;
     DeviceInfo info_;
+    mutable std::uint64_t bytes_taken_ = 0;
     cl::Context context_;
     cl::CommandQueue queue_;
     std::vector<Pending> pending_;

@@ -75,6 +75,10 @@ SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ra
 void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = watch.builds();
+    if (!report.ranks.empty()) {  // whose commands are their own, but the works are of all
+        report.measured.roofline.emplace().lacking = "it is of one device; start one rank for it";
+        return;
+    }
     try {
         const DevicePeak peak =
             watch.steps().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });

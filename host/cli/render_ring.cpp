@@ -1,6 +1,7 @@
 // raya render on a ring machine: pixels are divided among the PEs.
 #include <optional>
 
+#include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/files/progress.hpp"
 #include "host/machine/budget.hpp"
@@ -94,16 +95,19 @@ void render_on_ring(const RenderCommand& command, Ranks& ranks) {
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
     Session session = watch.steps().during("open device", [&] { return Session(device); });
-    watch.observe(session);
+    watch.observe(session, ranks);
     RingRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     bar->stage("rendering");
     const RingResult result =
         renderer.render(bar->active() ? [&](double done) { bar->update(done); } : ProgressCallback{});
+    const std::vector<Json> of_ranks = rank_reports(ranks, session, "pes", result);
+    watch.gather(session, ranks);
     if (!ranks.first()) return;
     bar->stage("writing");
 
     RenderReport report = make_report(command, input, settings, session.device(), result);
+    report.ranks = of_ranks;
     watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
     if (command.profile) {
         bar->stage("measuring the device's peak");

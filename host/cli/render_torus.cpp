@@ -3,6 +3,7 @@
 #include <numeric>
 #include <optional>
 
+#include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
@@ -124,7 +125,7 @@ void render_on_torus(const RenderCommand& command, Ranks& ranks) {
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
     Session session = watch.steps().during("open device", [&] { return Session(device); });
-    watch.observe(session);
+    watch.observe(session, ranks);
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     std::optional<PacketTrace> packets;
@@ -136,9 +137,12 @@ void render_on_torus(const RenderCommand& command, Ranks& ranks) {
     const TorusResult result = render_to_its_end(
         renderer, *bar, {packets ? &*packets : nullptr, trace ? &*trace : nullptr, history ? &*history : nullptr});
 
+    const std::vector<Json> of_ranks = rank_reports(ranks, session, "nodes", result);
+    watch.gather(session, ranks);
     if (!ranks.first()) return;
     bar->stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
+    report.ranks = of_ranks;
     if (history) {
         bar->stage("simulating");
         const History all = history->finish();

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "host/cl/clock_anchor.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
@@ -49,10 +51,38 @@ void check_trace(const CLI::App& command, const TraceOptions& trace) {
 
 RenderWatch::RenderWatch(const TraceOptions& trace, bool profile) : trace_(trace), profile_(profile) {}
 
-void RenderWatch::observe(Session& session) {
+void RenderWatch::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
     session.observe(steps_, traces() ? trace_.events : 0);
     if (traces() && session.profile().timed()) anchor_ = clock_anchor(session);
+    if (traces() && ranks.many()) compare_clocks(ranks);
+}
+
+// The trace begins where the first of all ranks began.
+void RenderWatch::compare_clocks(Ranks& ranks) {
+    many_ = true;
+    clock_ = rank_clock(ranks, host_clock_ns);
+    const auto offset = static_cast<std::uint64_t>(clock_.offset_ns);  // of what is added modulo 2^64
+    const std::vector<std::uint64_t> begins = ranks.all_gather(begin_ + offset);
+    begin_ = *std::min_element(begins.begin(), begins.end()) - offset;
+    for (const RankClock& c : ranks.all_gather(clock_))
+        clocks_.push_back({{"offset_ns", c.offset_ns}, {"uncertainty_ns", c.uncertainty_ns}});
+}
+
+void RenderWatch::gather(Session& session, Ranks& ranks) {
+    if (!traces() || !ranks.many()) return;
+    TraceFile own(trace_.events / ranks.count());
+    if (!ranks.first()) add_measured(own, session, ranks.rank());
+    const TraceFile::Part part = own.part();
+    const std::vector<std::string> names = ranks.gather(part.names), texts = ranks.gather(part.text);
+    const std::vector<std::uint64_t> events = ranks.all_gather(part.events), left_out = ranks.all_gather(part.left_out);
+    for (std::size_t rank = 1; rank < texts.size(); ++rank)
+        others_.push_back({names[rank], texts[rank], events[rank], left_out[rank]});
+}
+
+void RenderWatch::add_measured(TraceFile& file, Session& session, std::uint32_t rank) {
+    add_host_steps(file, steps_.steps(), begin_, {rank, many_});
+    add_device_commands(file, session.device().name, session.profile(), anchor_, begin_, {rank, many_});
 }
 
 std::vector<ProgramBuild> RenderWatch::builds() const {
@@ -65,11 +95,12 @@ std::vector<ProgramBuild> RenderWatch::builds() const {
 
 void RenderWatch::write(Session& session, const std::function<void(TraceFile&)>& add_machine) {
     if (!traces()) return;
-    TraceFile file(trace_.events);
+    TraceFile file(trace_.events / (1 + others_.size()));
     file.metadata()["program"] = "raya " RAYA_VERSION;
-    add_host_steps(file, steps_.steps(), begin_);
-    add_device_commands(file, session.device().name, session.profile(), anchor_, begin_);
+    if (many_) file.metadata()["rank_clocks"] = clocks_;
+    add_measured(file, session, 0);
     add_machine(file);
+    for (const TraceFile::Part& part : others_) file.add(part);
     write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));
     if (file.left_out() > 0)
         say(fmt::format("raya: {}: {} events are left out of {}; remedy: --trace-events {}, or fewer --trace-pes\n",

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/ranks/clocks.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/trace_file.hpp"
 
@@ -36,8 +38,12 @@ class RenderWatch {
     bool traces() const { return !trace_.file.empty(); }
     StepLog& steps() { return steps_; }
 
-    /// What the session does from now on is noted, and its device's clock compared with the host's.
-    void observe(Session& session);
+    /// What the session does from now on is noted, and its device's clock compared with the host's; this rank's clock
+    /// with rank 0's.
+    void observe(Session& session, Ranks& ranks);
+
+    /// Brings what other ranks have noted so far to rank 0.
+    void gather(Session& session, Ranks& ranks);
 
     /// Seconds of each program's build, in their order.
     std::vector<ProgramBuild> builds() const;
@@ -47,11 +53,18 @@ class RenderWatch {
     void write(Session& session, const std::function<void(TraceFile&)>& add_machine);
 
   private:
+    void compare_clocks(Ranks& ranks);
+    void add_measured(TraceFile& file, Session& session, std::uint32_t rank);
+
     const TraceOptions& trace_;
     bool profile_;
     std::uint64_t begin_ = host_clock_ns();
     StepLog steps_;
     ClockAnchor anchor_;
+    RankClock clock_;
+    bool many_ = false;
+    std::vector<TraceFile::Part> others_;
+    Json clocks_ = Json::list();
 };
 
 }  // namespace raya

@@ -22,6 +22,10 @@ concept Sendable = std::is_trivially_copyable_v<T>;
 struct RankTraffic {
     std::uint64_t messages = 0, bytes = 0;
     double waiting_s = 0;
+
+    RankTraffic operator-(const RankTraffic& before) const {
+        return {messages - before.messages, bytes - before.bytes, waiting_s - before.waiting_s};
+    }
 };
 
 /// Calls are made by all ranks in the same order. Alone they do nothing: what rank 0 sends to all is there already.

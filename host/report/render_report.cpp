@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <set>
+
 #include "host/files/json.hpp"
 #include "host/machine/budget.hpp"
 #include "host/machine/unit_text.hpp"
@@ -95,6 +98,7 @@ Json measured_json(const RenderReport& report) {
     const auto& m = report.measured;
     Json json = {{"build_s", m.build_s}, {"render_s", m.render_s}};
     json["commands"] = commands_json(m.commands, m.roofline.has_value());
+    if (!report.ranks.empty()) json["ranks"] = report.ranks;
     if (!m.roofline) return json;
     json["builds"] = builds_json(m.builds);
     if (!m.roofline->lacking.empty()) json["no_roofline"] = m.roofline->lacking;
@@ -238,6 +242,23 @@ std::string memory_line(const RenderReport& r) {
         r.torus ? torus_memory_text(*r.torus) : "");
 }
 
+// Which of the ranks waited longest for the others, and what they sent.
+std::string ranks_line(const RenderReport& r) {
+    if (r.ranks.empty()) return {};
+    double waiting = 0;
+    std::uint64_t messages = 0, bytes = 0;
+    std::set<std::string> hosts;
+    for (const Json& rank : r.ranks) {
+        waiting = std::max(waiting, rank.at("waiting_s").number());
+        messages += rank.at("messages_sent").whole();
+        bytes += rank.at("bytes_sent").whole();
+        hosts.insert(rank.at("host").text());
+    }
+    return fmt::format("ranks   {} on {} host{}; {} messages, {} sent; one waited {:.3f} s for others\n",
+                       r.ranks.size(), hosts.size(), hosts.size() == 1 ? "" : "s", messages, needed_text(bytes),
+                       waiting);
+}
+
 }  // namespace
 
 std::string human_summary(const RenderReport& r) {
@@ -254,6 +275,7 @@ std::string human_summary(const RenderReport& r) {
     text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({} lanes)\n", r.measured.build_s,
                         r.measured.render_s, rate_text(static_cast<double>(rays) / r.measured.render_s), r.device.name,
                         r.device.lanes);
+    text += ranks_line(r);
     text += fmt::format("image   {} ({})\n", r.image.file, r.image.hash);
     return text;
 }

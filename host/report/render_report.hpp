@@ -74,6 +74,8 @@ struct RenderReport {
     std::optional<ModelledTime> modelled;  // empty: the machine's rates are not known
     std::optional<TorusReport> torus;      // of a machine that divides the scene, in place of the four above
 
+    std::vector<Json> ranks;  // of each rank what it had, did and sent; empty where there is one
+
     struct {
         double build_s = 0, render_s = 0;
         std::vector<LabelSummary> commands;

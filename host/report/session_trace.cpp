@@ -7,7 +7,13 @@
 namespace raya {
 namespace {
 
-constexpr TraceTrack kSteps = {kTraceHost, 1};
+std::uint32_t process_of(TraceProcess process, const TraceRank& rank) {
+    return process + kTraceProcesses * rank.number;
+}
+
+std::string name_of(const std::string& process, const TraceRank& rank) {
+    return rank.named ? fmt::format("rank {} {}", rank.number, process) : process;
+}
 
 // Times of one device on the trace's.
 class DeviceTimes {
@@ -46,13 +52,14 @@ Json arguments_of(const CommandRecord& c) {
 }
 
 // The first track that is free at `start`; a new one where none is.
-std::uint32_t free_track(TraceFile& trace, std::vector<std::uint64_t>& busy_until, std::uint64_t start) {
+std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
+                         std::uint64_t start) {
     const auto found =
         std::find_if(busy_until.begin(), busy_until.end(), [&](std::uint64_t end) { return end <= start; });
     const auto track = static_cast<std::uint32_t>(found - busy_until.begin()) + 1;
     if (found == busy_until.end()) {
         busy_until.push_back(0);
-        trace.name_track({kTraceDevice, track}, track == 1 ? "queue" : fmt::format("queue, overlapping {}", track));
+        trace.name_track({process, track}, track == 1 ? "queue" : fmt::format("queue, overlapping {}", track));
     }
     return track;
 }
@@ -69,25 +76,27 @@ Json clock_json(const ClockAnchor& anchor) {
 
 }  // namespace
 
-void add_host_steps(TraceFile& trace, const std::vector<HostStep>& steps, std::uint64_t begin) {
-    trace.name_process(kTraceHost, "host (measured)");
-    trace.name_track(kSteps, "steps");
-    for (const HostStep& s : steps) trace.slice(kSteps, s.name, s.started - begin, s.ended - begin);
+void add_host_steps(TraceFile& trace, const std::vector<HostStep>& steps, std::uint64_t begin, const TraceRank& rank) {
+    const TraceTrack track = {process_of(kTraceHost, rank), 1};
+    trace.name_process(track.process, name_of("host (measured)", rank));
+    trace.name_track(track, "steps");
+    for (const HostStep& s : steps) trace.slice(track, s.name, s.started - begin, s.ended - begin);
 }
 
 void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockAnchor& anchor,
-                         std::uint64_t begin) {
+                         std::uint64_t begin, const TraceRank& rank) {
     if (!profile.timed()) {
         trace.metadata()["device"] = "left out: the device does not time its commands";
         return;
     }
-    trace.name_process(kTraceDevice, fmt::format("device: {} (measured)", device));
+    const std::uint32_t process = process_of(kTraceDevice, rank);
+    trace.name_process(process, name_of(fmt::format("device: {} (measured)", device), rank));
     DeviceTimes times(anchor, begin);
     std::vector<std::uint64_t> busy_until;
     for (const CommandRecord& c : profile.commands()) {
         const std::uint64_t start = times.at(c.started, 0), end = times.at(c.ended, start);
-        const std::uint32_t track = free_track(trace, busy_until, start);
-        trace.slice({kTraceDevice, track}, c.label, start, end, arguments_of(c));
+        const std::uint32_t track = free_track(trace, process, busy_until, start);
+        trace.slice({process, track}, c.label, start, end, arguments_of(c));
         busy_until[track - 1] = end;
     }
     trace.metadata()["device_clock"] = clock_json(anchor);

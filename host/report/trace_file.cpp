@@ -91,6 +91,14 @@ void TraceFile::flow(const std::string& name, TraceTrack from, std::uint64_t fro
     end(R"("f","bp":"e")", to, to_at);
 }
 
+void TraceFile::add(const Part& part) {
+    names_ += part.names;
+    text_ += part.text;
+    events_ += part.events;
+    left_out_ += part.left_out;
+    most_events_ = std::max(most_events_, events_);
+}
+
 std::string TraceFile::head() const { return "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n"; }
 
 std::string TraceFile::tail() const {

@@ -15,8 +15,10 @@
 
 namespace raya {
 
-/// The processes of a raya trace, in the order in which they are shown.
+/// The processes of a raya trace, in the order in which they are shown: those of rank 0 with the modelled machine, then
+/// host and device of each other rank.
 enum TraceProcess : std::uint32_t { kTraceHost = 1, kTraceDevice = 2, kTraceMachine = 3 };
+inline constexpr std::uint32_t kTraceProcesses = 3;  // of a rank
 
 /// A row of slices.
 struct TraceTrack {
@@ -48,6 +50,15 @@ class TraceFile {
 
     /// What the trace says of itself.
     Json& metadata() { return metadata_; }
+
+    /// What was put in so far, to be added to the trace of another process. Processes and tracks of the two are not the
+    /// same; there are no flows in it.
+    struct Part {
+        std::string names, text;
+        std::uint64_t events = 0, left_out = 0;
+    };
+    Part part() const { return {names_, text_, events_, left_out_}; }
+    void add(const Part& part);
 
     std::size_t events() const { return events_; }
     std::size_t left_out() const { return left_out_; }

@@ -129,6 +129,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     communication_ = {};
     const StepLog::Step rendering = session_.step("render");
     const Clock::time_point start = Clock::now();
+    const RankTraffic before = ranks_.traffic();
     RingResult result;
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
@@ -138,6 +139,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
     collect_events(result);
     if (settings_.dynamic && ranks_.first()) simulate_schedule(result);
     result.render_s = seconds_since(start);
+    result.traffic = ranks_.traffic() - before;
     gathered_ = {};
     describe(result);
     return result;
@@ -307,6 +309,7 @@ void RingRenderer::describe(RingResult& result) {
     result.pe_memory = memory_;
     if (settings_.accel.kind != AccelKind::kNone) result.accel = job_.accel;
     result.words_local = tracer_->options().words_local;
+    result.parts_here = pes_.count;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
     result.build_options = tracer_->build_options();

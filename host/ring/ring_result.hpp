@@ -11,6 +11,7 @@
 #include "host/machine/communication.hpp"
 #include "host/machine/load.hpp"
 #include "host/machine/machine.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/ring/cost_image.hpp"
 #include "host/ring/pe_memory.hpp"
 #include "host/scene/length_scale.hpp"
@@ -43,6 +44,8 @@ struct RingResult {
     PeMemory pe_memory;
     std::optional<AccelSummary> accel;  // of the grid or tree that rays walked
     bool words_local = true;            // PEs copied the broadcast words into local memory at each launch
+    std::uint32_t parts_here = 0;       // PEs of this rank
+    RankTraffic traffic;                // of this rank, while it rendered
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
     // Measured on the host: to make the grid or tree; kernel build; everything after it.

@@ -145,6 +145,7 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     p.session.clear_profile();
     const Clock::time_point start = Clock::now();
     const StepLog::Step rendering = p.session.step("render");
+    const RankTraffic before = p.ranks.traffic();
     TorusResult result;
     std::vector<raya_head> returns;
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
@@ -153,6 +154,7 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     if (p.ranks.first()) p.compose(result, returns);
     p.collect(result);
     result.render_s = seconds_since(start);
+    result.traffic = p.ranks.traffic() - before;
     p.describe(result);
     if (p.ranks.first()) p.check(result);
     return result;
@@ -271,6 +273,7 @@ void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.buffers = job.buffers;
     result.copied_words = nodes->words_local() ? job.words : 0;
     result.node_bytes = node_bytes(job.buffers);
+    result.parts_here = share.nodes();
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;
     result.build_options = nodes->build_options();

@@ -9,6 +9,7 @@
 #include "host/image/image.hpp"
 #include "host/machine/load.hpp"
 #include "host/machine/machine.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/superstep.hpp"
@@ -37,6 +38,8 @@ struct TorusResult {
     std::uint64_t node_bytes = 0;     // of the fullest node: words and buffers
     std::uint64_t copied_words = 0;   // of the scene, by all nodes into local memory, whenever a kernel starts
     std::uint64_t contributions = 0;  // return packets that reached the host
+    std::uint32_t parts_here = 0;     // nodes of this rank
+    RankTraffic traffic;              // of this rank, while it rendered
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
     double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
