@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "host/cli/bench_ranks.hpp"
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
@@ -31,6 +32,7 @@ struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
     std::vector<std::string> ways;
+    std::vector<std::uint32_t> ranks;
     std::uint32_t samples = 7;
     std::string report, baseline;
     double tolerance = 10;  // percent
@@ -179,6 +181,10 @@ void print_denormals(const std::vector<BenchRow>& rows) {
 void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
     if (parsed.count("--tolerance") > 0 && command.baseline.empty())
         throw UserError("--tolerance says what --compare puts up with: give --compare FILE.json as well");
+    for (const char* option : {"--ways", "--denormals", "--compare"})
+        if (!command.ranks.empty() && parsed.count(option) > 0)
+            throw UserError(
+                fmt::format("{} with --ranks, which times whole renders of one kind: leave one out", option));
     if (!command.ways.empty() && parsed.count("--accel") > 0)
         throw UserError("--accel with --ways: the ways none, grid and bvh say which; leave --accel out");
     if (command.ways.empty() || command.ways != std::vector<std::string>(command.ways.size(), "torus")) return;
@@ -190,17 +196,23 @@ void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
                             option));
 }
 
+Scene scene_of(const BenchCommand& command) {
+    return command.render.scene.empty() ? parse_nff(embedded_files().at("scenes/spheres.nff"), "scenes/spheres.nff")
+                                        : read_scene(command.render.scene, command.render.strict).scene;
+}
+
 void bench(const CLI::App& parsed, BenchCommand command) {
     refuse_ignored(parsed, command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
     const BenchReport baseline = checked_files(command);
+    if (!command.ranks.empty())
+        return bench_on_ranks(parsed, command.render, scene_of(command),
+                              {command.ranks, command.samples, command.report});
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();
-    const Scene scene = command.render.scene.empty()
-                            ? parse_nff(embedded_files().at("scenes/spheres.nff"), "scenes/spheres.nff")
-                            : read_scene(command.render.scene, command.render.strict).scene;
+    const Scene scene = scene_of(command);
     const RingSettings settings = ring_settings(command.render, scene);
     if (settings.antialias.method != AntialiasMethod::kNone)
         throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
@@ -237,6 +249,14 @@ void add_bench_command(CLI::App& program) {
               "is what the others are held against")
         ->delimiter(',')
         ->type_name("none,grid,bvh,torus");
+    add_value(
+        *command, "--ranks", options->ranks,
+        "Time whole renders on these numbers of MPI ranks, with commas between them: the same picture on more "
+        "ranks, and pixels, on the torus objects, in proportion to ranks; efficiency against one rank. raya starts "
+        "them by mpirun, or by the command in RAYA_MPIRUN")
+        ->delimiter(',')
+        ->allow_extra_args(false)  // what follows is the scene
+        ->type_name("1,2,...");
     command->add_flag("--denormals", options->denormals,
                       "Time every row once more with denormal numbers taken for 0: where that is faster, lanes compute "
                       "with them");

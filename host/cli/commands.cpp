@@ -76,11 +76,11 @@ void silence_interruptions(const Ranks& ranks) {
     for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) end_silently_on(signal);
 }
 
-// Other commands than render would do the same in every process.
+// Other commands than these two would do the same in every process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
     if (!ranks.many()) return;
     for (CLI::App* command : program.get_subcommands({}))
-        if (command->get_name() != "render")
+        if (command->get_name() != "render" && command->get_name() != "ping")
             command->preparse_callback([name = command->get_name()](std::size_t) {
                 throw UserError(
                     fmt::format("{} runs in one process, render in several; remedy: start it without mpirun", name));
@@ -101,6 +101,7 @@ int run_on(Ranks& ranks, int argc, char** argv) {
     add_bench_command(program);
     add_study_command(program);
     add_verify_command(program);
+    add_ping_command(program, ranks);
     silence_interruptions(ranks);
     refuse_many_ranks(program, ranks);
     return ranks.close(printed(ranks, parse_and_run(program, ranks, argc, argv)));

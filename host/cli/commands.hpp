@@ -26,5 +26,6 @@ void add_generate_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_study_command(CLI::App& program);
 void add_verify_command(CLI::App& program);
+void add_ping_command(CLI::App& program, Ranks& ranks);
 
 }  // namespace raya

@@ -1,0 +1,28 @@
+// raya ping: what messages take between ranks, by the transport that renders use.
+#include "host/ranks/ping.hpp"
+
+#include <fmt/core.h>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+void ping_pong(Ranks& ranks) {
+    if (!ranks.many())
+        throw UserError("ping sends messages between ranks and there is one; start it as mpirun -n 2 raya ping");
+    const PingReport report = ping(ranks);
+    if (ranks.first()) fmt::print("{}\n", report.json().dump(2));
+}
+
+}  // namespace
+
+void add_ping_command(CLI::App& program, Ranks& ranks) {
+    CLI::App* command = program.add_subcommand(
+        "ping", "Under mpirun: seconds that messages of 1 B to 4 MB take between ranks, and alpha and beta, as JSON");
+    command->callback([&ranks] { ping_pong(ranks); });
+}
+
+}  // namespace raya

@@ -1,0 +1,163 @@
+#include "host/ranks/ping.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <limits>
+#include <map>
+
+namespace raya {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kMostBytes = 4 << 20;
+
+// Of nothing no message is sent, so the shortest has a byte.
+constexpr std::uint64_t kMessages[] = {1, 64, 1 << 10, 4 << 10, 16 << 10, 64 << 10, 256 << 10, 1 << 20, kMostBytes};
+constexpr std::uint64_t kGathers[] = {136, 1088, 8704, 69632};  // status of 1, 8, 64 and 512 nodes
+
+// Many of what is short, since little disturbs it; 1 GB in all at most.
+int turns_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
+
+template <class Call>
+double least_seconds(int turns, Call&& call) {
+    double least = std::numeric_limits<double>::max();
+    for (int i = 0; i < turns; ++i) {
+        const Clock::time_point start = Clock::now();
+        call();
+        least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
+    }
+    return least;
+}
+
+// There and back, told in rank 0.
+MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t bytes) {
+    std::vector<std::byte> block(bytes);
+    if (ranks.rank() != 0 && ranks.rank() != partner) return {bytes, 0};
+    const double both = least_seconds(turns_of(bytes), [&] {
+        if (ranks.first()) ranks.send(partner, std::span<const std::byte>(block));
+        ranks.receive(ranks.first() ? partner : 0, std::span(block));
+        if (!ranks.first()) ranks.send(0, std::span<const std::byte>(block));
+    });
+    return {bytes, both / 2};
+}
+
+MessageTime gather_time(Ranks& ranks, std::uint64_t bytes) {
+    const std::vector<std::byte> own(bytes);
+    const std::vector<std::size_t> sizes(ranks.count(), bytes);
+    return {bytes, least_seconds(turns_of(bytes), [&] { ranks.all_gather(std::span<const std::byte>(own), sizes); })};
+}
+
+struct HostUse {
+    std::uint64_t threads = 0, cores = 0;
+};
+
+std::map<std::string, HostUse> use_of_hosts(std::span<const RankPlace> ranks) {
+    std::map<std::string, HostUse> hosts;
+    for (const RankPlace& rank : ranks) {
+        hosts[rank.host].threads += rank.threads;
+        hosts[rank.host].cores = rank.cores;
+    }
+    return hosts;
+}
+
+Json json_of(const std::vector<MessageTime>& times) {
+    Json list = Json::list();
+    for (const MessageTime& time : times) list.push_back({{"bytes", time.bytes}, {"seconds", time.seconds}});
+    return list;
+}
+
+std::vector<MessageTime> times_of(const Json& list) {
+    std::vector<MessageTime> times;
+    for (const Json& one : list.elements()) times.push_back({one.at("bytes").whole(), one.at("seconds").number()});
+    return times;
+}
+
+}  // namespace
+
+// The sum of ((alpha + beta b) / t - 1)^2 is least where its derivatives by both are 0.
+Network fitted_network(std::span<const MessageTime> times) {
+    double ones = 0, b = 0, bb = 0, y = 0, by = 0;  // sums of 1/t^2, b/t^2, b^2/t^2, 1/t, b/t
+    for (const MessageTime& time : times) {
+        const double w = 1 / time.seconds, bytes = static_cast<double>(time.bytes);
+        ones += w * w;
+        b += bytes * w * w;
+        bb += bytes * bytes * w * w;
+        y += w;
+        by += bytes * w;
+    }
+    const double determinant = ones * bb - b * b;
+    const Network both{(y * bb - by * b) / determinant, (by * ones - y * b) / determinant};
+    if (both.alpha_s < 0) return {0, by / bb};
+    if (both.beta_s < 0) return {y / ones, 0};
+    return both;
+}
+
+// PoCL's threads are shared out when ranks are opened.
+RankPlace own_place(const std::string& host) {
+    const auto cores = static_cast<std::uint32_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
+    const char* const said = std::getenv("POCL_MAX_PTHREAD_COUNT");
+    const int threads = said != nullptr ? std::atoi(said) : 0;
+    return {host, threads > 0 ? static_cast<std::uint32_t>(threads) : cores, cores};
+}
+
+std::uint32_t cores_of(std::span<const RankPlace> ranks) {
+    std::uint64_t cores = 0;
+    for (const auto& [host, use] : use_of_hosts(ranks)) cores += std::min(use.threads, use.cores);
+    return static_cast<std::uint32_t>(cores);
+}
+
+bool share_cores(std::span<const RankPlace> ranks) {
+    return std::ranges::any_of(use_of_hosts(ranks),
+                               [](const auto& host) { return host.second.threads > host.second.cores; });
+}
+
+PingReport ping(Ranks& ranks) {
+    PingReport report;
+    report.library = ranks.library();
+    const std::vector<std::string> hosts = ranks.gather(ranks.host());
+    const RankPlace own = own_place("");
+    const std::vector<std::uint32_t> threads = ranks.all_gather(own.threads), cores = ranks.all_gather(own.cores);
+    for (std::size_t rank = 0; rank < hosts.size(); ++rank)
+        report.ranks.push_back({hosts[rank], threads[rank], cores[rank]});
+    report.partner = 1;
+    for (std::uint32_t rank = ranks.first() ? ranks.count() - 1 : 0; rank > 0; --rank)
+        if (hosts[rank] != hosts[0]) report.partner = rank;
+    ranks.broadcast(report.partner);
+    for (const std::uint64_t bytes : kMessages) report.messages.push_back(message_time(ranks, report.partner, bytes));
+    for (const std::uint64_t bytes : kGathers) report.gathers.push_back(gather_time(ranks, bytes));
+    if (ranks.first()) report.network = fitted_network(report.messages);
+    return report;
+}
+
+Json PingReport::json() const {
+    Json places = Json::list();
+    for (const RankPlace& place : ranks)
+        places.push_back({{"host", place.host}, {"threads", place.threads}, {"cores", place.cores}});
+    return {{"kind", "raya ping"},
+            {"library", library},
+            {"ranks", places},
+            {"partner", partner},
+            {"messages", json_of(messages)},
+            {"gathers", json_of(gathers)},
+            {"alpha_s", network.alpha_s},
+            {"beta_s_per_byte", network.beta_s}};
+}
+
+PingReport PingReport::of(const Json& json) {
+    PingReport report;
+    report.library = json.at("library").text();
+    const auto few = [](const Json& number) { return static_cast<std::uint32_t>(number.whole(UINT32_MAX)); };
+    for (const Json& place : json.at("ranks").elements())
+        report.ranks.push_back({place.at("host").text(), few(place.at("threads")), few(place.at("cores"))});
+    report.partner = few(json.at("partner"));
+    report.messages = times_of(json.at("messages"));
+    report.gathers = times_of(json.at("gathers"));
+    report.network = {json.at("alpha_s").number(), json.at("beta_s_per_byte").number()};
+    return report;
+}
+
+}  // namespace raya

@@ -1,0 +1,80 @@
+#include "host/study/rank_runs.hpp"
+
+#include <fmt/core.h>
+
+#include "host/files/read_file.hpp"
+#include "host/files/temporary_folder.hpp"
+
+namespace raya {
+namespace {
+
+// What ranks have written or printed; other programs may stand behind RAYA_MPIRUN.
+template <class Read>
+auto read_as(const std::string& text, const char* what, Read&& read) {
+    try {
+        return read(Json::parse(text));
+    } catch (const JsonError& error) {
+        throw RanksFailure(fmt::format("what the ranks tell is no {}: {}", what, error.what()));
+    } catch (const JsonSyntaxError&) {
+        throw RanksFailure(fmt::format("what the ranks tell is no {}", what));
+    }
+}
+
+std::string report_text(const std::string& file) {
+    try {
+        return read_file(file);
+    } catch (const UnreadableFile& error) {
+        throw RanksFailure(fmt::format(
+            "{}: the report of rank 0 cannot be read: {}; remedy: let TMPDIR name a folder that its host has too", file,
+            error.what()));
+    }
+}
+
+}  // namespace
+
+double RankedRender::device_s() const {
+    double sum = 0;
+    for (const RankedCommand& command : commands) sum += command.seconds;
+    return sum;
+}
+
+double RankedRender::device_s(const std::string& label) const {
+    double sum = 0;
+    for (const RankedCommand& command : commands) sum += command.label == label ? command.seconds : 0;
+    return sum;
+}
+
+RankedRender ranked_render(const Json& report) {
+    const Json &image = report.at("image"), &device = report.at("device"), &measured = report.at("measured"),
+               &rays = report.at("rays");
+    RankedRender render{.render_s = measured.at("render_s").number(),
+                        .hash = image.at("hash").text(),
+                        .device = device.at("name").text(),
+                        .platform = device.at("platform").text(),
+                        .width = static_cast<std::uint32_t>(image.at("width").whole(UINT32_MAX)),
+                        .height = static_cast<std::uint32_t>(image.at("height").whole(UINT32_MAX)),
+                        .work = report.at("load").at("mean").number() * report.at("machine").at("pes").number(),
+                        .commands = {}};
+    for (const char* kind : {"primary", "reflected", "refracted", "shadow"}) render.rays += rays.at(kind).whole();
+    for (const Json& command : measured.at("commands").elements())
+        render.commands.push_back({command.at("label").text(), command.at("kind").text(),
+                                   1e-9 * command.at("total_ns").number(), command.at("launches").whole()});
+    return render;
+}
+
+RankedRender render_on_ranks(const Mpirun& mpirun, std::uint32_t ranks, std::optional<std::uint32_t> threads,
+                             const std::vector<std::string>& arguments) {
+    const TemporaryFolder folder("raya-ranks");
+    const std::string report = folder / "report.json";
+    std::vector<std::string> all = {"render"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    all.insert(all.end(), {"--quiet", "-o", (folder / "image.pfm").string(), "--report", report});
+    mpirun.run(ranks, threads, all);
+    return read_as(report_text(report), "report of raya render", ranked_render);
+}
+
+PingReport ping_of(const Mpirun& mpirun, std::uint32_t ranks) {
+    return read_as(mpirun.run(ranks, {}, {"ping"}), "report of raya ping", PingReport::of);
+}
+
+}  // namespace raya
