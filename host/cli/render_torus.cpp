@@ -23,31 +23,36 @@ namespace raya {
 namespace {
 
 // What is made of a render beside its image, where it is asked for.
-struct Makes {
-    PacketTrace* packets = nullptr;
-    TorusTrace* trace = nullptr;
-    HistoryRecorder* history = nullptr;
+struct ByProducts {
+    ByProducts(const RenderCommand& command, const RenderWatch& watch, const TorusSettings& settings) {
+        if (!command.torus.packets.empty()) packets.emplace();
+        if (watch.traces()) trace.emplace(settings.torus);
+        if (settings.history) history.emplace(settings.torus, settings.packets);
+    }
+
+    std::optional<PacketTrace> packets;
+    std::optional<TorusTrace> trace;
+    std::optional<HistoryRecorder> history;
 };
 
-TorusResult render_with_progress(TorusRenderer& renderer, ProgressBar& bar, const Makes& makes) {
-    const auto [packets, trace, history] = makes;
+TorusResult render_with_progress(TorusRenderer& renderer, ProgressBar& bar, ByProducts& makes) {
     PacketSink packet_sink;
     SuperstepSink step_sink;
     NodeWorkSink work_sink;
-    if (trace) step_sink = [makes](const SuperstepDetail& step) { makes.trace->add_superstep(step); };
-    if (packets || trace)
-        packet_sink = [makes](const PacketRecord& record) {
+    if (makes.trace) step_sink = [&](const SuperstepDetail& step) { makes.trace->add_superstep(step); };
+    if (makes.packets || makes.trace)
+        packet_sink = [&](const PacketRecord& record) {
             if (makes.packets) makes.packets->add(record);
             if (makes.trace) makes.trace->add_packet(record);
         };
-    if (history) work_sink = [makes](const NodeWork& work) { makes.history->add(work); };
+    if (makes.history) work_sink = [&](const NodeWork& work) { makes.history->add(work); };
     bar.stage("rendering");
     return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{}, packet_sink,
-                           step_sink, packets ? 1 : TorusTrace::kPacketsEvery, work_sink);
+                           step_sink, makes.packets ? 1 : TorusTrace::kPacketsEvery, work_sink);
 }
 
 // Where the machine stands still, a queue is looked for that is long enough.
-TorusResult render_to_its_end(TorusRenderer& renderer, ProgressBar& bar, const Makes& makes) {
+TorusResult render_to_its_end(TorusRenderer& renderer, ProgressBar& bar, ByProducts& makes) {
     try {
         return render_with_progress(renderer, bar, makes);
     } catch (const Standstill& still) {
@@ -85,9 +90,27 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     return t;
 }
 
+void write_images(const RenderCommand& command, const TorusResult& result, const RenderReport& report,
+                  const Scene& scene, ByProducts& makes, StepLog& steps) {
+    const StepLog::Step step(&steps, "write images");
+    write_image(command.image, result.image, image_attributes(report, scene.name));
+    if (makes.packets) write_whole_file(command.torus.packets, makes.packets->finish());
+}
+
+void refuse_history_of_ranks(const TorusSettings& settings, const Ranks& ranks) {
+    if (settings.history && ranks.many())
+        throw UserError("--async and --replay follow every packet of all nodes; start raya without mpirun for them");
+}
+
 void write_replay(const ReplayFiles& files, const raya_torus& torus, const History& history) {
     write_whole_file(files.platform, simgrid_platform(torus, {}));
     write_whole_file(files.replay, simgrid_replay(torus, history, {}));
+}
+
+void add_asynchronous_time(TorusReport& report, const RenderCommand& command, const TorusSettings& settings,
+                           const History& history, StepLog& steps) {
+    report.modelled.asynchronous = steps.during("simulate", [&] { return simulate(settings.torus, history).time(); });
+    if (!command.torus.replay.empty()) write_replay(ReplayFiles(command.torus.packets), settings.torus, history);
 }
 
 RenderReport make_report(const RenderCommand& command, const SceneInput& input, const TorusSettings& settings,
@@ -119,8 +142,7 @@ void render_on_torus(const RenderCommand& command, Ranks& ranks) {
     SceneInput input = read_scene_once(watch, options, ranks);
     const Scene& scene = input.scene;
     const TorusSettings settings = torus_settings(options, command.torus, scene);
-    if (ranks.many() && settings.history)
-        throw UserError("--async and --replay follow every packet of all nodes; start raya without mpirun for them");
+    refuse_history_of_ranks(settings, ranks);
     bar->stage("preparing");
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
@@ -128,32 +150,19 @@ void render_on_torus(const RenderCommand& command, Ranks& ranks) {
     watch.observe(session, ranks);
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
-    std::optional<PacketTrace> packets;
-    std::optional<TorusTrace> trace;
-    std::optional<HistoryRecorder> history;
-    if (!command.torus.packets.empty()) packets.emplace();
-    if (watch.traces()) trace.emplace(settings.torus);
-    if (settings.history) history.emplace(settings.torus, settings.packets);
-    const TorusResult result = render_to_its_end(
-        renderer, *bar, {packets ? &*packets : nullptr, trace ? &*trace : nullptr, history ? &*history : nullptr});
-
+    ByProducts makes(command, watch, settings);
+    const TorusResult result = render_to_its_end(renderer, *bar, makes);
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "nodes", result);
     watch.gather(session, ranks);
     if (!ranks.first()) return;
     bar->stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
-    if (history) {
+    if (makes.history) {
         bar->stage("simulating");
-        const History all = history->finish();
-        report.torus->modelled.asynchronous =
-            watch.steps().during("simulate", [&] { return simulate(settings.torus, all).time(); });
-        if (!command.torus.replay.empty()) write_replay(ReplayFiles(command.torus.packets), settings.torus, all);
+        add_asynchronous_time(*report.torus, command, settings, makes.history->finish(), watch.steps());
     }
-    watch.steps().during("write images", [&] {
-        write_image(command.image, result.image, image_attributes(report, scene.name));
-        if (packets) write_whole_file(command.torus.packets, packets->finish());
-    });
+    write_images(command, result, report, scene, makes, watch.steps());
     if (command.profile) {
         bar->stage("measuring the device's peak");
         add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result), input.warnings);
@@ -162,7 +171,7 @@ void render_on_torus(const RenderCommand& command, Ranks& ranks) {
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
     const ProgressBar tracing(!command.quiet && watch.traces(), "writing the trace");
-    watch.write(session, [&](TraceFile& file) { trace->add_to(file, result, command.trace.pes); });
+    watch.write(session, [&](TraceFile& file) { makes.trace->add_to(file, result, command.trace.pes); });
 }
 
 }  // namespace raya

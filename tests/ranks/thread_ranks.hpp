@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/cl/device.hpp"
 #include "host/ranks/ranks.hpp"
 
 namespace raya {
@@ -98,6 +99,7 @@ class ThreadTransport final : public Transport {
 /// Runs `work` in so many ranks at once, `of_host` on each host, and throws what one of them has thrown. What all have
 /// sent must have been received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t of_host = 8) {
+    all_devices();  // PoCL 3.1 has no device for threads that ask for the first time while another one does
     Letterbox box;
     std::exception_ptr thrown;
     std::mutex of_thrown;

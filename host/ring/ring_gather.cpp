@@ -1,0 +1,144 @@
+// What comes back from the PEs of a ring, of all ranks to rank 0: pixels, costs, marks, counters.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "host/error.hpp"
+#include "host/ring/pixel_walk.hpp"
+#include "host/ring/ring_renderer.hpp"
+
+namespace raya {
+namespace {
+
+Image black(const raya_mapping& m) {
+    return {static_cast<int>(m.width), static_cast<int>(m.height),
+            std::vector<float>(3 * std::size_t{m.width} * m.height)};
+}
+
+// Each pixel has one primary ray, counted when its lane takes it. Some devices end long loops early and say nothing
+// (Mesa's llvmpipe after 65,535 turns of a work-item); the pixels that they leave out would be wrong.
+void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const PeSegment& pes,
+                      const DeviceInfo& device) {
+    std::uint64_t pixels = 0;
+    for (std::uint32_t i = 0; i < pes.count; ++i) pixels += raya_share_size(raya_share_of(m, pes.first + i));
+    const std::uint64_t traced = first_pass[RAYA_PRIMARY];
+    if (traced == pixels) return;
+    throw DeviceError(
+        fmt::format("{} {} ended the trace kernel after {} of {} pixels; remedy: see what raya verify finds; more PEs "
+                    "(--pes), which leave each work-item fewer pixels and do not change the image, or another device",
+                    device.platform, device.name, traced, pixels));
+}
+
+// The events of all ranks, added to both.
+void add_events(const std::vector<EventCounts>& of_ranks, EventCounts& phase, EventCounts& all) {
+    for (const EventCounts& events : of_ranks)
+        for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+            phase[event] += events[event];
+            all[event] += events[event];
+        }
+}
+
+}  // namespace
+
+// What each rank's PEs hold, so many elements a PE, comes to rank 0, which takes it rank by rank.
+template <class T, class Take>
+void RingRenderer::bring(std::vector<T>& own, std::size_t of_pe, const Take& take) {
+    if (!ranks_.first()) return ranks_.send(0, std::span<const T>(own));
+    take(pes_, own);
+    for (std::uint32_t rank = 1; rank < ranks_.count(); ++rank) {
+        const PeSegment pes = segment_of(settings_.mapping.pes, ranks_.count(), rank);
+        own.resize(of_pe * pes.count);
+        ranks_.receive(rank, std::span(own));
+        take(pes, own);
+    }
+}
+
+void RingRenderer::gather(PixelRange range, RingResult& result) {
+    const StepLog::Step step = session_.step("gather");
+    const raya_mapping& m = settings_.mapping;
+    session_.flush();  // the device traces while the host takes memory, whose first use is slow, or places pixels
+    if (result.image.rgb.empty() && ranks_.first()) result.image = black(m);
+    place_gathered(result);
+    gathered_.resize(pixels_.size());
+    std::uint64_t owned = 0;
+    for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
+        const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
+        owned += share > range.begin ? std::min(share, range.end) - range.begin : 0;
+    }
+    bus_.gather(pixels_, gathered_, 3 * owned);
+    if (ranks_.many())
+        bring(gathered_, std::size_t{3} * window_,
+              [&](const PeSegment& pes, std::span<const float> pixels) { place(pes, range, pixels, result); });
+    else
+        gathered_range_ = range;
+}
+
+void RingRenderer::place_gathered(RingResult& result) {
+    place(pes_, gathered_range_, gathered_, result);
+    gathered_range_ = {};
+}
+
+void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const float> pixels,
+                         RingResult& result) const {
+    for_each_pixel(settings_.mapping, pes, range, window_, [&](std::size_t from, std::size_t to) {
+        std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
+                    result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
+    });
+}
+
+// What the kernels counted is read by the host to be reported: no transfer of the machine.
+void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
+    if (!keeps_costs()) return;
+    const StepLog::Step step = session_.step("collect costs");
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
+        session_.read("read cost", counters_[i].cycles, cycles);
+        bring(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
+            for_each_pixel(settings_.mapping, pes, range, window_, [&](std::size_t from, std::size_t to) {
+                result.phases[i].kept_cost->cycles[to] = counted[from];
+                if (counters_.size() > 1) result.all.kept_cost->cycles[to] += counted[from];
+            });
+        });
+    }
+}
+
+void RingRenderer::collect_marks(RingResult& result) {
+    const StepLog::Step step = session_.step("collect marks");
+    if (ranks_.first()) result.mask = black(settings_.mapping);
+    std::vector<std::uint8_t> marks(contrast_->marks().size());
+    session_.read("read marks", contrast_->marks(), marks);
+    bring(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> marked) {
+        for_each_pixel(settings_.mapping, pes, {0, 0, share_}, window_, [&](std::size_t from, std::size_t to) {
+            result.recomputed += marked[from];
+            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3,
+                        static_cast<float>(marked[from]));
+        });
+    });
+}
+
+void RingRenderer::collect_events(RingResult& result) {
+    const StepLog::Step step = session_.step("collect events");
+    const auto cycles = cycles_of_events();
+    std::vector<std::uint64_t> all(settings_.mapping.pes);
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        std::vector<std::uint64_t> counted(counters_[i].events.size()), loads(pes_.count), of_all;
+        session_.read("read counters", counters_[i].events, counted);
+        EventCounts events{};
+        for (std::size_t n = 0; n < counted.size(); ++n) {
+            const std::size_t event = n % RAYA_EVENTS, pe = n / RAYA_EVENTS / settings_.kernels.group_size;
+            events[event] += counted[n];
+            loads[pe] += cycles[event] * counted[n];
+        }
+        if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
+        add_events(ranks_.all_gather(events), result.phases[i].events, result.all.events);
+        bring(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> of_rank) {
+            of_all.insert(of_all.end(), of_rank.begin(), of_rank.end());
+        });
+        std::transform(of_all.begin(), of_all.end(), all.begin(), all.begin(), std::plus<>());
+        if (ranks_.first()) result.phases[i].load = load_of(std::move(of_all));
+    }
+    if (ranks_.first()) result.all.load = load_of(std::move(all));
+}
+
+}  // namespace raya
