@@ -113,11 +113,13 @@ class Ranks {
     void wait();
 
     /// Does the work in one rank of each host, then in the others: what the first leaves in a cache they find there.
+    /// Returns when all have done it.
     template <std::invocable Work>
     void one_first_on_each_host(Work&& work) {
         if (on_host_ == 0) work();
         wait_for_first_on_host();
         if (on_host_ > 0) work();
+        all_gather('\0');
     }
 
     const RankTraffic& traffic() const { return traffic_; }
