@@ -73,8 +73,8 @@ RankedRender render_on_ranks(const Mpirun& mpirun, std::uint32_t ranks, std::opt
     return read_as(report_text(report), "report of raya render", ranked_render);
 }
 
-PingReport ping_of(const Mpirun& mpirun, std::uint32_t ranks) {
-    return read_as(mpirun.run(ranks, {}, {"ping"}), "report of raya ping", PingReport::of);
+PingReport ping_of(const Mpirun& mpirun, std::uint32_t ranks, std::optional<std::uint32_t> threads) {
+    return read_as(mpirun.run(ranks, threads, {"ping"}), "report of raya ping", PingReport::of);
 }
 
 }  // namespace raya

@@ -43,6 +43,6 @@ RankedRender render_on_ranks(const Mpirun& mpirun, std::uint32_t ranks, std::opt
                              const std::vector<std::string>& arguments);
 
 /// A ping-pong between so many ranks, two at least. RanksFailure.
-PingReport ping_of(const Mpirun& mpirun, std::uint32_t ranks);
+PingReport ping_of(const Mpirun& mpirun, std::uint32_t ranks, std::optional<std::uint32_t> threads = {});
 
 }  // namespace raya

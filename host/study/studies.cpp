@@ -32,6 +32,8 @@ std::span<const Study> studies() {
         {"inject", "Torus: the root makes all primary rays, or all nodes do", true, study_inject},
         {"hybrid", "Torus: groups of nodes share the screen, each divides space", false, study_hybrid},
         {"simgrid", "Torus without supersteps: raya's simulator beside SimGrid", true, study_simgrid, lack_of_simgrid},
+        {"ranks", "1 to 65,536 MPI ranks, ring and torus: where communication takes half, beside what is measured here",
+         true, study_ranks, lack_of_ranks},
     };
     return all;
 }

@@ -115,4 +115,19 @@ std::string lack_of_simgrid();
 StudyPage simgrid_page(Session& session, const LabelledScene& scene, std::uint32_t size,
                        const std::filesystem::path& program);
 
+// Several machines.
+StudyFunction study_ranks;
+std::string lack_of_ranks();
+
+/// Pixels a side, the torus's 17 at least.
+struct RanksSizes {
+    std::uint32_t ring = 512, torus = 512;
+};
+
+/// Predictions for 1, 2, 4, ... ranks, 65,536 or one for each pixel of the ring, beside renders that `mpirun` starts
+/// here. RanksFailure.
+class Mpirun;
+StudyPage ranks_page(Laboratory& laboratory, const LabelledScene& on_ring, const LabelledScene& on_torus,
+                     const RanksSizes& sizes, const Mpirun& mpirun);
+
 }  // namespace raya
