@@ -7,6 +7,7 @@
 #include "host/scene/nff_writer.hpp"
 #include "host/study/measured.hpp"
 #include "host/study/prose.hpp"
+#include "host/study/rank_trials.hpp"
 #include "host/study/ranks_machines.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"
@@ -16,8 +17,7 @@ namespace raya {
 namespace {
 
 constexpr const char* kName = "ranks";
-constexpr int kTurns = 3;  // of each measured number of ranks
-constexpr const char* kHere = "measured here";
+constexpr const char* kHere = "this host";
 
 struct NamedNetwork {
     std::string name, source;
@@ -54,55 +54,6 @@ struct Check {
 };
 using Checks = std::vector<Check>;
 
-// What a machine took on the ranks that were tried, in turns.
-struct Trial {
-    std::vector<double> seconds;
-    RankedRender best;  // of least time
-};
-
-// What a machine and its host have to say to a number of ranks.
-struct Here {
-    std::vector<std::uint32_t> ranks;  // that are measured: up to twice the cores, 4 to 16
-    std::vector<double> processors;    // that these have together
-    PingReport ping;
-};
-
-Here look_around(const Mpirun& mpirun) {
-    const std::uint32_t cores = own_place("").cores;
-    Here here{{1}, {1}, {}};
-    for (std::uint32_t ranks = 2; ranks <= std::clamp(2 * cores, 4u, 16u); ranks *= 2) {
-        const PingReport ping = ping_of(mpirun, ranks, 1);
-        here.ranks.push_back(ranks);
-        here.processors.push_back(cores_of(ping.ranks));
-        const bool between_hosts = ping.ranks[ping.partner].host != ping.ranks[0].host;
-        const bool known = ranks > 2 && here.ping.ranks[here.ping.partner].host != here.ping.ranks[0].host;
-        if (ranks == 2 || (between_hosts && !known)) here.ping = ping;
-    }
-    return here;
-}
-
-std::vector<Trial> measure(const Mpirun& mpirun, const RankedMachine& machine, const Here& here) {
-    std::vector<Trial> trials(here.ranks.size());
-    render_on_ranks(mpirun, 1, 1, machine.arguments);  // builds kernels
-    for (int turn = 0; turn < kTurns; ++turn)
-        for (std::size_t i = 0; i < trials.size(); ++i) {
-            RankedRender render = render_on_ranks(mpirun, here.ranks[i], 1, machine.arguments);
-            const bool best = turn == 0 || render.render_s < trials[i].best.render_s;
-            trials[i].seconds.push_back(render.render_s);
-            if (best) trials[i].best = std::move(render);
-        }
-    return trials;
-}
-
-// The kernels that tell the loads must be those that are timed.
-void check_device(const DeviceInfo& device, const RankedRender& render) {
-    if (render.device != device.name)
-        throw UserError(fmt::format(
-            "study ranks runs on the default devices of its ranks, here {}, and was given {}: leave --device out, or "
-            "name the device in RAYA_DEVICE",
-            render.device, device.name));
-}
-
 Networks networks_of(const PingReport& ping) {
     return {{kHere, fmt::format("fitted to the ping-pong, {}", ping.library), ping.network},
             {"10 GbE", "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes", {30e-6, 0.8e-9}},
@@ -121,8 +72,8 @@ Rows rows_of(const RankedMachine& machine, const MeasuredWork& one, const Networ
     return rows;
 }
 
-Checks checks_of(const RankedMachine& machine, const MeasuredWork& one, const Here& here,
-                 const std::vector<Trial>& trials) {
+Checks checks_of(const RankedMachine& machine, const MeasuredWork& one, const RanksHere& here,
+                 const std::vector<RankTrial>& trials) {
     Checks checks;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         const double processors = trials[i].best.on_processors() ? here.processors[i] : here.ranks[i];
@@ -177,7 +128,7 @@ std::string finding_of_checks(const Checks& checks) {
                             : fmt::format("{:.2f} to {:.2f}", std::ranges::min(all), std::ranges::max(all));
     };
     return finding(kName, "checks", "own"_a = ratios(where(more, [](const Check& c) { return !c.shared(); })),
-                   "shared"_a = ratios(where(more, &Check::shared)), "turns"_a = kTurns);
+                   "shared"_a = ratios(where(more, &Check::shared)), "turns"_a = kRankTurns);
 }
 
 std::string finding_of_network(const PingReport& ping) {
@@ -211,7 +162,7 @@ StudyPlot plot_of_parts(const Rows& rows, const std::string& machine, const std:
 
 StudyPlot plot_of_networks(const Rows& rows, const Checks& checks, const std::string& machine) {
     StudyPlot plot{fmt::format("{}-{}-networks", kName, machine),
-                   fmt::format("{}: time against ranks, by network", machine), "ranks", "ms", Axes::kLogBoth};
+                   fmt::format("{}: time against ranks, by network", machine), "ranks", "time (ms)", Axes::kLogBoth};
     plot.series = lines(where(rows, [&](const Row& row) { return row.machine == machine; }), &Row::network, &Row::ranks,
                         &Row::total_ms);
     const Checks some = where(checks, [&](const Check& check) { return check.machine == machine; });
@@ -270,45 +221,59 @@ std::vector<StudyTable> tables_of(const Rows& rows, const Checks& checks, const 
                  false)};
 }
 
+struct Found {
+    Rows rows;
+    Checks checks;
+    PingReport ping;
+    Networks networks;
+};
+
+Found find(Laboratory& lab, const LabelledScene& on_ring, const LabelledScene& on_torus, const RanksSizes& sizes,
+           const Mpirun& mpirun) {
+    const TemporaryFolder folder("raya-study");
+    const std::string ring_file = folder / "ring.nff", torus_file = folder / "torus.nff";
+    write_whole_file(ring_file, write_nff(on_ring.scene));
+    write_whole_file(torus_file, write_nff(on_torus.scene));
+    const RanksHere here = look_around(mpirun);
+    Found found{{}, {}, here.ping, networks_of(here.ping)};
+    for (const RankedMachine& machine : {ring_on_ranks(lab, on_ring, ring_file, sizes.ring),
+                                         torus_on_ranks(lab.session(), on_torus, torus_file, sizes.torus)}) {
+        const std::vector<RankTrial> trials = measure(mpirun, machine, here, lab.session().device());
+        const MeasuredWork one = work_of(machine, trials.front().best);
+        std::ranges::move(rows_of(machine, one, found.networks), std::back_inserter(found.rows));
+        std::ranges::move(checks_of(machine, one, here, trials), std::back_inserter(found.checks));
+    }
+    return found;
+}
+
+std::vector<Comparison> comparisons_of(const Checks& checks) {
+    return each(where(checks, [](const Check& check) { return check.ranks > 1; }), [](const Check& check) {
+        return Comparison{fmt::format("{}, {} ranks: predicted / measured", check.machine, check.ranks), "",
+                          std::nullopt, check.ratio(), check.remark()};
+    });
+}
+
 }  // namespace
 
 std::string lack_of_ranks() { return Mpirun::of_this_program().lack(); }
 
 StudyPage ranks_page(Laboratory& lab, const LabelledScene& on_ring, const LabelledScene& on_torus,
                      const RanksSizes& sizes, const Mpirun& mpirun) {
-    const TemporaryFolder folder("raya-study");
-    const std::string ring_file = folder / "ring.nff", torus_file = folder / "torus.nff";
-    write_whole_file(ring_file, write_nff(on_ring.scene));
-    write_whole_file(torus_file, write_nff(on_torus.scene));
-    const Here here = look_around(mpirun);
-    const Networks networks = networks_of(here.ping);
-    Rows rows;
-    Checks checks;
-    for (const RankedMachine& machine : {ring_on_ranks(lab, on_ring, ring_file, sizes.ring),
-                                         torus_on_ranks(lab.session(), on_torus, torus_file, sizes.torus)}) {
-        const std::vector<Trial> trials = measure(mpirun, machine, here);
-        check_device(lab.session().device(), trials.front().best);
-        const MeasuredWork one = work_of(machine, trials.front().best);
-        std::ranges::move(rows_of(machine, one, networks), std::back_inserter(rows));
-        std::ranges::move(checks_of(machine, one, here, trials), std::back_inserter(checks));
-    }
+    const auto [rows, checks, ping, networks] = find(lab, on_ring, on_torus, sizes, mpirun);
     const std::vector<Summary> summaries = summaries_of(rows);
     StudyPage page = page_about(kName, {{"scene", on_ring.label},
                                         {"torus_scene", on_torus.label},
                                         {"size", sizes.ring},
                                         {"torus_size", sizes.torus},
                                         {"ranks", rows.back().ranks},
-                                        {"turns", kTurns},
-                                        {"alpha_s", here.ping.network.alpha_s},
-                                        {"beta_s_per_byte", here.ping.network.beta_s}});
+                                        {"turns", kRankTurns},
+                                        {"alpha_s", ping.network.alpha_s},
+                                        {"beta_s_per_byte", ping.network.beta_s}});
     page.clock = sentence(kName, "clock");
     page.findings = {finding_of_machine(summaries, "ring"), finding_of_machine(summaries, "torus"),
-                     finding_of_checks(checks), finding_of_network(here.ping)};
-    for (const Check& check : checks)
-        if (check.ranks > 1)
-            page.comparisons.push_back({fmt::format("{}, {} ranks: predicted / measured", check.machine, check.ranks),
-                                        "", std::nullopt, check.ratio(), check.remark()});
-    page.tables = tables_of(rows, checks, networks, here.ping, summaries);
+                     finding_of_checks(checks), finding_of_network(ping)};
+    page.comparisons = comparisons_of(checks);
+    page.tables = tables_of(rows, checks, networks, ping, summaries);
     for (const std::string machine : {"ring", "torus"}) {
         page.plots.push_back(plot_of_networks(rows, checks, machine));
         page.plots.push_back(plot_of_parts(rows, machine, networks[1].name));

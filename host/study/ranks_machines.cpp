@@ -71,7 +71,7 @@ std::vector<TorusPart> torus_parts(Session& session, const Scene& scene, const T
     std::vector<TorusPart> parts;
     for (const BrickCounter& counter : counters) {
         parts.push_back(counter.part());
-        parts.back().status_bytes = kWordBytes * RAYA_STATUS_WORDS * raya_nodes(settings.torus);
+        parts.back().status_bytes = kWordBytes * double{RAYA_STATUS_WORDS} * raya_nodes(settings.torus);
         parts.back().scene_bytes = kWordBytes * static_cast<double>(result.copied_words);
     }
     return parts;
