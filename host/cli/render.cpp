@@ -12,8 +12,10 @@ namespace {
 void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) {
     const Machine& machine = machine_named(command.render.machine);
     refuse_options_of_other_machines(parsed, machine);
-    check_trace(parsed, command.trace);
-    if (ranks.first()) check_targets(command);
+    if (ranks.first()) {  // who writes; elsewhere the folders need not be there
+        check_trace(parsed, command.trace);
+        check_targets(command);
+    }
     machine.kind == MachineKind::kTorus ? render_on_torus(command, ranks) : render_on_ring(command, ranks);
 }
 
