@@ -9,7 +9,8 @@
 
 namespace raya {
 
-inline constexpr int kRankTurns = 3;  // renders on each number of ranks, in turn
+inline constexpr int kRankTurns = 3;       // renders on each number of ranks, in turn, at most
+inline constexpr double kEnoughRankS = 5;  // of renders on one number of ranks: then no further
 
 /// What is here.
 struct RanksHere {

@@ -6,6 +6,7 @@
 #include "host/files/whole_file.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "host/study/measured.hpp"
+#include "host/study/other_load.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rank_trials.hpp"
 #include "host/study/ranks_machines.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr const char* kName = "ranks";
 constexpr const char* kHere = "this host";
+constexpr double kQuiet = 0.05;  // share of the processors that others may have beside what is measured
 
 struct NamedNetwork {
     std::string name, source;
@@ -131,6 +133,11 @@ std::string finding_of_checks(const Checks& checks) {
                    "shared"_a = ratios(where(more, &Check::shared)), "turns"_a = kRankTurns);
 }
 
+// Supersteps wait for the slowest rank, so that what takes a processor from one of them holds up all.
+std::string finding_of_others(double share) {
+    return finding(kName, share <= kQuiet ? "quiet" : "disturbed", "others"_a = 100 * share);
+}
+
 std::string finding_of_network(const PingReport& ping) {
     const MessageTime& longest = ping.messages.back();
     return finding(kName, "network", "alpha"_a = 1e6 * ping.network.alpha_s, "beta"_a = 1e9 * ping.network.beta_s,
@@ -226,6 +233,7 @@ struct Found {
     Checks checks;
     PingReport ping;
     Networks networks;
+    std::optional<double> others;  // share of the processors that other programs had meanwhile
 };
 
 Found find(Laboratory& lab, const LabelledScene& on_ring, const LabelledScene& on_torus, const RanksSizes& sizes,
@@ -234,8 +242,9 @@ Found find(Laboratory& lab, const LabelledScene& on_ring, const LabelledScene& o
     const std::string ring_file = folder / "ring.nff", torus_file = folder / "torus.nff";
     write_whole_file(ring_file, write_nff(on_ring.scene));
     write_whole_file(torus_file, write_nff(on_torus.scene));
+    const OtherLoad load;
     const RanksHere here = look_around(mpirun);
-    Found found{{}, {}, here.ping, networks_of(here.ping)};
+    Found found{{}, {}, here.ping, networks_of(here.ping), {}};
     for (const RankedMachine& machine : {ring_on_ranks(lab, on_ring, ring_file, sizes.ring),
                                          torus_on_ranks(lab.session(), on_torus, torus_file, sizes.torus)}) {
         const std::vector<RankTrial> trials = measure(mpirun, machine, here, lab.session().device());
@@ -243,6 +252,7 @@ Found find(Laboratory& lab, const LabelledScene& on_ring, const LabelledScene& o
         std::ranges::move(rows_of(machine, one, found.networks), std::back_inserter(found.rows));
         std::ranges::move(checks_of(machine, one, here, trials), std::back_inserter(found.checks));
     }
+    found.others = load.share();
     return found;
 }
 
@@ -259,7 +269,7 @@ std::string lack_of_ranks() { return Mpirun::of_this_program().lack(); }
 
 StudyPage ranks_page(Laboratory& lab, const LabelledScene& on_ring, const LabelledScene& on_torus,
                      const RanksSizes& sizes, const Mpirun& mpirun) {
-    const auto [rows, checks, ping, networks] = find(lab, on_ring, on_torus, sizes, mpirun);
+    const auto [rows, checks, ping, networks, others] = find(lab, on_ring, on_torus, sizes, mpirun);
     const std::vector<Summary> summaries = summaries_of(rows);
     StudyPage page = page_about(kName, {{"scene", on_ring.label},
                                         {"torus_scene", on_torus.label},
@@ -267,11 +277,13 @@ StudyPage ranks_page(Laboratory& lab, const LabelledScene& on_ring, const Labell
                                         {"torus_size", sizes.torus},
                                         {"ranks", rows.back().ranks},
                                         {"turns", kRankTurns},
+                                        {"enough", kEnoughRankS},
                                         {"alpha_s", ping.network.alpha_s},
                                         {"beta_s_per_byte", ping.network.beta_s}});
     page.clock = sentence(kName, "clock");
     page.findings = {finding_of_machine(summaries, "ring"), finding_of_machine(summaries, "torus"),
                      finding_of_checks(checks), finding_of_network(ping)};
+    if (others) page.findings.insert(page.findings.begin() + 3, finding_of_others(*others));
     page.comparisons = comparisons_of(checks);
     page.tables = tables_of(rows, checks, networks, ping, summaries);
     for (const std::string machine : {"ring", "torus"}) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "host/error.hpp"
+#include "host/study/other_load.hpp"
 #include "host/study/ranks_machines.hpp"
 #include "host/study/studies.hpp"
 #include "host/study/torus_runs.hpp"
@@ -148,6 +149,16 @@ TEST_CASE("the first number of ranks on which communication takes half", "[study
     CHECK(half_at(ranks, std::vector{little, little, half}) == 4);
     CHECK(half_at(ranks, std::vector{little, much, little}) == 2);
     CHECK(half_at(ranks, std::vector{little, little, little}) == 0);
+}
+
+TEST_CASE("processors' time is read from a line of the system, and nothing else", "[study]") {
+    const auto time = processor_time("cpu  100 20 30 400 50 6 7 8 9 10", 10);
+    REQUIRE(time);
+    CHECK(time->busy_s == Approx(17.1));  // (100 + 20 + 30 + 6 + 7 + 8) / 10
+    CHECK(time->all_s == Approx(62.1));
+    CHECK_FALSE(processor_time("cpu 1 2 3", 10));
+    CHECK_FALSE(processor_time("intr 1 2 3 4 5 6 7 8", 10));
+    CHECK_FALSE(processor_time("", 10));
 }
 
 TEST_CASE("the study of ranks on small pictures: its shape, and what holds of any network", "[study]") {
