@@ -90,8 +90,6 @@ Rows of_machine(const Rows& rows, const std::string& machine, const std::string&
     return where(rows, [&](const Row& row) { return row.machine == machine && row.network == network; });
 }
 
-std::uint32_t half_of(const Rows& rows) { return half_at(each(rows, &Row::ranks), each(rows, &Row::parts)); }
-
 // What one machine comes to by one network.
 struct Summary {
     Row best;  // fewest seconds
@@ -105,7 +103,7 @@ std::vector<Summary> summaries_of(const Rows& rows) {
     for (const std::string& machine : distinct(rows, &Row::machine))
         for (const std::string& network : distinct(rows, &Row::network)) {
             const Rows some = of_machine(rows, machine, network);
-            all.push_back({least(some, &Row::total_ms), half_of(some)});
+            all.push_back({least(some, &Row::total_ms), half_at(each(some, &Row::ranks), each(some, &Row::parts))});
         }
     return all;
 }
@@ -152,18 +150,18 @@ auto ms_of(double RankParts::*part) {
 // Each part of the time by one network; on logarithmic axes nothing is drawn of what takes nothing.
 StudyPlot plot_of_parts(const Rows& rows, const std::string& machine, const std::string& network) {
     StudyPlot plot{fmt::format("{}-{}", kName, machine), fmt::format("{} on ranks, by {}", machine, network), "ranks",
-                   "ms", Axes::kLogBoth};
+                   "time (ms)", Axes::kLogBoth};
     const Rows some = of_machine(rows, machine, network);
     plot.series.push_back(line("in all", some, &Row::ranks, &Row::total_ms));
-    const std::pair<const char*, double RankParts::*> parts[] = {
-        {"compute", &RankParts::compute_s},
-        {"host", &RankParts::host_s},
-        {"exchange", &RankParts::exchange_s},
-        {machine == "ring" ? "pixels to rank 0" : "status to all", &RankParts::collect_s},
-        {"scene", &RankParts::broadcast_s}};
-    for (const auto& [label, part] : parts)
+    const auto add = [&](const char* label, double RankParts::*part) {
         plot.series.push_back(
-            line(label, where(some, [part](const Row& row) { return row.parts.*part > 0; }), &Row::ranks, ms_of(part)));
+            line(label, where(some, [=](const Row& row) { return row.parts.*part > 0; }), &Row::ranks, ms_of(part)));
+    };
+    add("compute", &RankParts::compute_s);
+    add("host", &RankParts::host_s);
+    add("exchange", &RankParts::exchange_s);
+    add(machine == "ring" ? "pixels to rank 0" : "status to all", &RankParts::collect_s);
+    add("scene", &RankParts::broadcast_s);
     return plot;
 }
 
