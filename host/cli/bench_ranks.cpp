@@ -16,6 +16,7 @@
 #include "host/scene/generate.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "host/study/measured.hpp"
+#include "host/study/other_load.hpp"
 #include "host/study/rank_runs.hpp"
 
 namespace raya {
@@ -213,7 +214,16 @@ Json json_of(const Rows& rows, const RankRow& row) {
             {"hash", row.said.hash}};
 }
 
-Json report_of(const Rows& rows, const std::string& scene, const std::string& machine) {
+void print_others(const std::optional<double>& share) {
+    if (share && *share > kQuiet)
+        fmt::print(
+            "other programs had {:.0f} % of this host's processors meanwhile: ranks waited for one another, and "
+            "these times say little\n",
+            100 * *share);
+}
+
+Json report_of(const Rows& rows, const std::string& scene, const std::string& machine,
+               const std::optional<double>& others) {
     Json list = Json::list();
     for (const RankRow& row : rows) list.push_back(json_of(rows, row));
     return {{"kind", "raya bench --ranks"},
@@ -222,6 +232,7 @@ Json report_of(const Rows& rows, const std::string& scene, const std::string& ma
             {"machine", machine},
             {"device", rows.front().said.device},
             {"unit", has_one_core(rows) ? "core" : "device"},
+            {"others", others},
             {"rows", list}};
 }
 
@@ -252,18 +263,21 @@ void bench_on_ranks(const CLI::App& parsed, const RenderOptions& options, const 
     if (warm.on_processors()) add_rows_of_one_core(rows);
     find_units(rows, mpirun, warm.on_processors());
     bar->stage("taking samples");
+    const OtherLoad load;
     for (std::uint32_t turn = 0; turn < asked.samples; ++turn)  // in turn, so that a disturbance hits all alike
         for (RankRow& row : rows) {
             take_sample(row, mpirun);
             bar->update((turn + double(&row - rows.data() + 1) / double(rows.size())) / asked.samples);
         }
+    const std::optional<double> others = load.share();
     bar.reset();
     check_images(rows);
     fmt::print("{} on {}: {}; {} renders of each row after a warm-up, in turn\n", scene.name, warm.device,
                options.machine, asked.samples);
     print_rows(rows);
+    print_others(others);
     if (!asked.report.empty())
-        write_whole_file(asked.report, report_of(rows, scene.name, options.machine).dump(2) + "\n");
+        write_whole_file(asked.report, report_of(rows, scene.name, options.machine, others).dump(2) + "\n");
 }
 
 }  // namespace raya

@@ -13,6 +13,9 @@ struct ProcessorTime {
 /// Of the first line of /proc/stat, in ticks of which a second has so many; empty for another text.
 std::optional<ProcessorTime> processor_time(const std::string& stat, double ticks);
 
+/// Share of the processors that others may have beside what is measured.
+inline constexpr double kQuiet = 0.05;
+
 class OtherLoad {
   public:
     /// Begins to look.

@@ -19,7 +19,6 @@ namespace {
 
 constexpr const char* kName = "ranks";
 constexpr const char* kHere = "this host";
-constexpr double kQuiet = 0.05;  // share of the processors that others may have beside what is measured
 
 struct NamedNetwork {
     std::string name, source;

@@ -54,6 +54,7 @@ TEST_CASE("bench --ranks renders one image on one rank and two, and tells of bot
         const Document report = Document::parse(file_contents(file));
         CHECK(report["kind"] == "raya bench --ranks");
         CHECK(report["machine"] == machine);
+        CHECK((report["others"].is_null() || (report["others"] >= 0.0 && report["others"] <= 1.0)));
         const bool cores = report["unit"] == "core";
         std::size_t strong = 0, weak = 0;
         double work = 0;
