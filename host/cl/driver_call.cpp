@@ -18,6 +18,9 @@ std::atomic<const char*> doing{nullptr};
 std::atomic<bool> explains{false};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
+std::array<char, 300> process{};  // "rank 1 on node7: ", or empty
+unsigned int turn_us = 0;
+
 constexpr std::array<int, 5> kCrashes = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
 
 /// Calls nothing but what a handler may call.
@@ -32,7 +35,10 @@ extern "C" void explain(int signal) {
         return;
     }
     remove_files_in_progress();
-    tell("\nraya: the OpenCL driver crashed (SIG");
+    if (turn_us > 0) ::usleep(turn_us);
+    tell("\nraya: ");
+    tell(process.data());
+    tell("the OpenCL driver crashed (SIG");
     tell(::sigabbrev_np(signal));
     tell(") while ");
     tell(what);
@@ -72,6 +78,12 @@ extern "C" __attribute__((visibility("default"))) int sigaction(int signal, cons
 
 DriverCall::DriverCall(const char* what) : before_(doing.exchange(what)) {}
 DriverCall::~DriverCall() { doing.store(before_); }
+
+void name_process_in_crashes(const std::string& name, double turn_s) {
+    process = {};
+    name.copy(process.data(), process.size() - 1);
+    turn_us = static_cast<unsigned int>(turn_s * 1e6);
+}
 
 void explain_driver_crashes() {
     explains = true;

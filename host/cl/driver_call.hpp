@@ -1,5 +1,6 @@
 // Drivers that end the program: what they were asked for, said in time.
 #pragma once
+#include <string>
 
 namespace raya {
 
@@ -20,6 +21,10 @@ class DriverCall {
 /// progress are removed, and the exit code is that of a DeviceError. Crashes elsewhere end the program as ever; so do
 /// all where something else, such as a sanitizer, handles them.
 void explain_driver_crashes();
+
+/// Of several processes: what stands before a crash's message ("rank 1 on node7: "), and how many seconds this process
+/// waits before it says it, in case all crash alike and one that speaks ends the others.
+void name_process_in_crashes(const std::string& name, double turn_s);
 
 /// Crashes end the program by their signal again: for a process whose parent wants to see it.
 void leave_driver_crashes();

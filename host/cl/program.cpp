@@ -49,6 +49,9 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}{}",
                                       device_error(error.what(), error.err(), what).what(), device_name, options_, log,
                                       log.find("error") == log.npos ? kNoReason : ""));
+    } catch (...) {            // out of memory, in the middle of the driver's work
+        program_() = nullptr;  // which has left it locked: to release it would wait for ever
+        throw;
     }
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     log_ = log_of(program_, device);

@@ -69,10 +69,12 @@ int printed(Ranks& ranks, int code) {
 }
 
 // Of what ends all ranks one speaks: rank 0, or mpirun, which passes it on as SIGTERM.
-void silence_interruptions(const Ranks& ranks) {
-    if (!ranks.many()) return;
+// From the start on: MPI's takes a while.
+void silence_interruptions() {
+    const std::optional<Launch> launch = launched();
+    if (!launch || launch->count == 1u) return;
     end_silently_on(SIGTERM);
-    if (ranks.first()) return;
+    if (launch->rank == 0) return;
     for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) end_silently_on(signal);
 }
 
@@ -102,9 +104,18 @@ int run_on(Ranks& ranks, int argc, char** argv) {
     add_study_command(program);
     add_verify_command(program);
     add_ping_command(program, ranks);
-    silence_interruptions(ranks);
     refuse_many_ranks(program, ranks);
-    return ranks.close(printed(ranks, parse_and_run(program, ranks, argc, argv)));
+    try {
+        return ranks.close(printed(ranks, parse_and_run(program, ranks, argc, argv)));
+    } catch (const RankFailure& failure) {
+        return ranks.fail(failure);
+    }
+}
+
+// What fails before there are ranks fails in every process, and the first says it.
+int fail_at_start(const std::string& text, int code) {
+    const std::optional<Launch> launch = launched();
+    return !launch || launch->rank == 0 ? Ranks::alone().fail(text, code) : code;
 }
 
 }  // namespace
@@ -113,12 +124,19 @@ int run_program(int argc, char** argv) {
     open_standard_files();
     end_cleanly_when_interrupted();
     explain_driver_crashes();
+    silence_interruptions();
     try {
         const std::unique_ptr<Ranks> ranks = open_ranks();
+        if (ranks)
+            name_process_in_crashes(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),
+                                    speaking_turn_s(ranks->rank()));
         return run_on(ranks ? *ranks : Ranks::alone(), argc, argv);
-    } catch (const UserError& error) {  // every process has it, the first says it
-        const std::optional<Launch> launch = launched();
-        return !launch || launch->rank == 0 ? Ranks::alone().fail(error.what(), kExitUserError) : kExitUserError;
+    } catch (const UserError& error) {
+        return fail_at_start(error.what(), kExitUserError);
+    } catch (const DeviceError& error) {
+        return fail_at_start(error.what(), kExitDeviceError);
+    } catch (const RankFailure& failure) {
+        return fail_at_start(failure.what(), failure.code);
     }
 }
 

@@ -12,6 +12,7 @@
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/files/module.hpp"
+#include "host/ranks/deadline.hpp"
 #include "host/ranks/mpi_module.hpp"
 
 namespace raya {
@@ -36,10 +37,18 @@ double patience() {
     return *seconds;
 }
 
-std::unique_ptr<Transport> open_transport(std::uint32_t count) {
+// A process that ends before it has reached MPI leaves the others waiting in MPI's start.
+std::unique_ptr<Transport> open_transport(const Launch& launch) {
+    const double limit_s = patience();
+    const std::uint32_t count = launch.count.value_or(0);
     try {
         auto* const open = reinterpret_cast<OpenMpi*>(module_function(kMpiModule, kOpenMpi));
-        return std::unique_ptr<Transport>(open(patience()));
+        const std::string text = fmt::format(
+            "raya: rank 0 has waited for all of {} ranks to start for {:g} s; remedy: look for one that hangs or has "
+            "ended, or let ranks wait longer with RAYA_RANK_TIMEOUT=SECONDS\n",
+            count, limit_s);
+        const Deadline deadline(limit_s, launch.rank == 0 ? text : "", kExitDeviceError);
+        return std::unique_ptr<Transport>(open(limit_s));
     } catch (const ModuleError& error) {
         throw UserError(
             fmt::format("started as one of {} processes, but this raya cannot load its MPI part: {}; remedy: install "
@@ -89,7 +98,7 @@ std::optional<Launch> launched() {
 std::unique_ptr<Ranks> open_ranks() {
     const std::optional<Launch> launch = launched();
     if (!launch || launch->count == 1u) return nullptr;
-    auto ranks = std::make_unique<Ranks>(open_transport(launch->count.value_or(0)));
+    auto ranks = std::make_unique<Ranks>(open_transport(*launch));
     if (launch->count && *launch->count != ranks->count()) {
         const std::string library = ranks->library();
         ranks->close(0);
@@ -98,7 +107,10 @@ std::unique_ptr<Ranks> open_ranks() {
             "of that MPI",
             *launch->count, library, ranks->count()));
     }
-    if (!ranks->many()) return nullptr;
+    if (!ranks->many()) {
+        ranks->close(0);
+        return nullptr;
+    }
     share_cores(*ranks);
     return ranks;
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "host/error.hpp"
+#include "host/ranks/deadline.hpp"
 #include "host/ranks/transport.hpp"
 
 namespace raya {
@@ -120,34 +121,40 @@ class MpiTransport final : public Transport {
     }
 
     void wait() override {
-        if (!complete(requests_, limit_s_))
-            throw RankFailure(
-                fmt::format(
-                    "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for one that hangs, "
-                    "or let ranks wait longer with RAYA_RANK_TIMEOUT=SECONDS",
-                    rank_, host_, limit_s_),
-                3);
+        if (!complete(requests_, limit_s_)) throw RankFailure(waited(), kExitDeviceError);
         requests_.clear();
     }
 
     void report_failure(const std::string& text, int code) override {
-        constexpr double kPatience = 4;  // seconds until this rank speaks itself
+        // Until this rank speaks itself; of several that fail at once one is the first, and ends the others.
+        const double patience_s = 4 + speaking_turn_s(rank());
         std::string message = fmt::format("{} {}", code, text);
         std::vector<MPI_Request> sent(1);
         const int size = static_cast<int>(message.size());
         if (MPI_Isend(message.data(), size, MPI_BYTE, 0, kFailureTag, failures_, sent.data()) != MPI_SUCCESS) return;
         const Clock::time_point start = Clock::now();
-        complete(sent, kPatience);
+        complete(sent, patience_s);
         // Rank 0 ends this process.
-        std::this_thread::sleep_for(std::chrono::duration<double>(kPatience - seconds_since(start)));
+        std::this_thread::sleep_for(std::chrono::duration<double>(patience_s - seconds_since(start)));
+    }
+
+    void look() override {
+        if (rank_ == 0) hear_failures();
     }
 
     [[noreturn]] void abort(int code) override {
+        constexpr double kMost = 5;  // seconds
+        const Deadline deadline(kMost, "", code);
+        std::this_thread::sleep_for(
+            std::chrono::milliseconds(200));  // MPICH's mpirun may lose what was said just before
         MPI_Abort(MPI_COMM_WORLD, code);
         std::_Exit(code);  // not reached, but MPI does not promise that
     }
 
-    void close() override { MPI_Finalize(); }
+    void close() override {
+        const Deadline deadline(limit_s_, rank_ == 0 ? fmt::format("raya: {}\n", waited()) : "", kExitDeviceError);
+        MPI_Finalize();
+    }
 
   private:
     template <class Byte, class Call>
@@ -163,6 +170,13 @@ class MpiTransport final : public Transport {
         MPI_Comm_size(host, &ranks);
         MPI_Comm_free(&host);
         return ranks;
+    }
+
+    std::string waited() const {
+        return fmt::format(
+            "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for one that hangs, or let ranks "
+            "wait longer with RAYA_RANK_TIMEOUT=SECONDS",
+            rank_, host_, limit_s_);
     }
 
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }

@@ -112,6 +112,9 @@ class Ranks {
     void start(std::span<const Outgoing> out, std::span<const Incoming> in);
     void wait();
 
+    /// Between steps of a long work: rank 0 hears of a rank that has failed. RankFailure.
+    void look() { transport_->look(); }
+
     /// Does the work in one rank of each host, then in the others: what the first leaves in a cache they find there.
     /// Returns when all have done it.
     template <std::invocable Work>

@@ -1,6 +1,7 @@
 // What carries bytes from rank to rank: MPI in a module of its own, threads in tests, nothing where a program runs
 // alone.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -30,6 +31,12 @@ struct RankFailure : std::runtime_error {
     int code;
 };
 
+/// Seconds by which a rank that has failed lets those before it speak and end all, so that of several one is heard.
+inline double speaking_turn_s(std::uint32_t rank) {
+    constexpr double kTurn = 0.25, kMost = 3;
+    return std::min(kTurn * rank, kMost);
+}
+
 /// Calls are made by all ranks in the same order, by one thread each. Every wait has an end: RankFailure.
 class Transport {
   public:
@@ -51,6 +58,9 @@ class Transport {
     /// the bytes stay where they are.
     virtual void start(std::span<const Outgoing> out, std::span<const Incoming> in) = 0;
     virtual void wait() = 0;
+
+    /// Throws RankFailure in rank 0 where another rank has told of one, and does not wait: for a rank that computes.
+    virtual void look() = 0;
 
     /// Tells rank 0 what went wrong here, so that it says so and ends all; returns after some seconds if it does not.
     virtual void report_failure(const std::string& text, int code) = 0;

@@ -149,18 +149,22 @@ void RingRenderer::trace(PixelRange range, const ProgressCallback& progress) {
     const StepLog::Step step = session_.step(kTracePass);
     const double passes = static_cast<double>(counters_.size());
     const auto report = [&](double done) {
-        progress((range.begin + done * (range.end - range.begin)) / share_ / passes);
+        ranks_.look();
+        if (progress) progress((range.begin + done * (range.end - range.begin)) / share_ / passes);
     };
     tracer_->trace(kTracePass, broadcast_, range, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
-                   progress ? report : ProgressCallback{});
+                   progress || listens() ? report : ProgressCallback{});
 }
 
 void RingRenderer::supersample(const ProgressCallback& progress) {
     const StepLog::Step step = session_.step(kSupersamplePass);
     contrast_->apply(pixels_, *exchange_);
-    const auto report = [&](double done) { progress((1 + done) / 2); };
+    const auto report = [&](double done) {
+        ranks_.look();
+        if (progress) progress((1 + done) / 2);
+    };
     tracer_->trace(kSupersamplePass, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(),
-                   pixels_, counters_[1], progress ? report : ProgressCallback{});
+                   pixels_, counters_[1], progress || listens() ? report : ProgressCallback{});
 }
 
 // Work-groups run to their end, so what a PE takes while the machine runs cannot be seen on a device; but it follows

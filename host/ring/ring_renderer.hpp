@@ -35,6 +35,7 @@ class RingRenderer {
 
   private:
     bool keeps_costs() const { return settings_.keep_costs || settings_.dynamic.has_value(); }
+    bool listens() const { return ranks_.many() && ranks_.first(); }  // for what others tell of their failures
     void build();
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);

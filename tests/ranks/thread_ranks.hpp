@@ -84,6 +84,7 @@ class ThreadTransport final : public Transport {
         waits_.clear();
     }
 
+    void look() override {}
     void report_failure(const std::string&, int) override {}
     [[noreturn]] void abort(int) override { throw std::logic_error("a rank of threads does not abort"); }
     void close() override {}

@@ -1,0 +1,87 @@
+// Ranks that are processes: what mpirun starts makes the files of one process.
+#include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+#include "tests/ranks/run_ranks.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint32_t kCounts[] = {1, 2, 3, 4, 7, 8};
+
+/// A render's files, by name; the report without what was measured.
+using Files = std::map<std::string, std::string>;
+
+Files files_in(const ScratchFolder& folder) {
+    Files files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+        const std::string name = entry.path().filename();
+        files[name] = file_contents(entry.path());
+        if (name.ends_with(".json")) {
+            Document report = Document::parse(files[name]);
+            report.erase("measured");
+            files[name] = report.dump(1);
+        }
+        std::filesystem::remove(entry.path());
+    }
+    return files;
+}
+
+void check_all_counts(const ScratchFolder& folder, const Words& render) {
+    const Outcome alone = run_raya(render);
+    INFO(alone.told());
+    REQUIRE(alone.code == 0);
+    const Files one = files_in(folder);
+    for (const Mpi& mpi : mpis_here())
+        for (const std::uint32_t count : kCounts) {
+            Words words = {"-n", std::to_string(count), mpi.program};
+            words.insert(words.end(), render.begin(), render.end());
+            const RanksOutcome run = run_ranks(mpi, words);
+            INFO(run.told());
+            REQUIRE(run.code == 0);
+            CHECK(run.messages == 0);
+            CHECK(run.left == 0);
+            const Files many = files_in(folder);
+            REQUIRE(many.size() == one.size());
+            for (const auto& [name, bytes] : one) {
+                CAPTURE(name);
+                CHECK((many.at(name) == bytes));
+            }
+        }
+}
+
+TEST_CASE("mpirun: pictures, counts and loads of the ring are those of one process", "[ranks][mpirun]") {
+    const ScratchFolder folder;
+    const Words common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
+                          "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
+                          "40x24"};
+    for (const Words& options : {Words{"--pes", "8", "--accel", "bvh"},
+                                 Words{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
+        Words render = common;
+        render.insert(render.end(), options.begin(), options.end());
+        check_all_counts(folder, render);
+    }
+}
+
+TEST_CASE("mpirun: picture, counts, loads and packets of the torus are those of one process", "[ranks][mpirun]") {
+    const ScratchFolder folder;
+    check_all_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report", folder / "x.json",
+                              "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes", "3x2x2", "--size",
+                              "16", "--group", "1", "--quiet"});
+}
+
+TEST_CASE("mpirun: what ranks send arrives, of any size, and from all to all", "[ranks][mpirun]") {
+    for (const Mpi& mpi : mpis_here())
+        for (const std::uint32_t count : {2u, 3u, 7u}) {
+            const std::string program = std::filesystem::path(mpi.program).parent_path() / "transport_check";
+            const RanksOutcome run = run_ranks(
+                mpi, {"-n", std::to_string(count), mpi.program == RAYA_PROGRAM ? RAYA_TRANSPORT_CHECK : program});
+            INFO(run.told());
+            CHECK(run.code == 0);
+            CHECK_THAT(run.out,
+                       Catch::Contains(" on " + std::to_string(count) + " ranks") && Catch::Contains(", 0 wrong\n"));
+            CHECK(run.left == 0);
+        }
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,218 @@
+// What goes wrong on one of several ranks, or before there are any: one message, the exit code of one process where
+// mpirun lets it through and never 0, no file, and no process that stays.
+#include <sys/stat.h>
+
+#include "tests/cli/failing_device.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/ranks/run_ranks.hpp"
+
+namespace raya {
+namespace {
+
+constexpr double kEnd_s = 10;  // after the fault all have ended
+
+Words on(const Mpi& mpi, std::uint32_t ranks, const Words& arguments) {
+    Words words = {"-n", std::to_string(ranks), mpi.program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return words;
+}
+
+Words render(const ScratchFolder& outputs, const Words& options = {}) {
+    Words words = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--quiet", "--lanes", "4"};
+    words.insert(words.end(), options.begin(), options.end());
+    return words;
+}
+
+void check_ended(const ScratchFolder& outputs, const RanksOutcome& run, std::size_t most_messages,
+                 double limit_s = kEnd_s) {
+    INFO(run.told());
+    CHECK(run.code != 0);
+    CHECK(run.messages <= most_messages);
+    CHECK(run.left == 0);
+    CHECK(run.seconds < limit_s);
+    CHECK(outputs.entries() == 0);
+}
+
+/// Ends with this code, and one message with these words.
+void check_told(const ScratchFolder& outputs, const RanksOutcome& run, int code, const Words& message) {
+    INFO(run.told());
+    CHECK(run.code == code);
+    CHECK(run.messages == 1);
+    for (const std::string& part : message) CHECK_THAT(run.err, Catch::Contains(part));
+    check_ended(outputs, run, 1);
+}
+
+/// A script that runs a program, in one rank after a command of the shell's.
+class OneRank {
+  public:
+    OneRank() {
+        std::ofstream(script_) << "#!/bin/sh\nonly=$1; what=$2; shift 2\n"
+                                  "[ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = \"$only\" ] && eval \"$what\"\n"
+                                  "exec \"$@\"\n";
+        ::chmod(script_.c_str(), 0755);
+    }
+
+    Words words(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
+                const Words& arguments) const {
+        Words all = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        return all;
+    }
+
+  private:
+    ScratchFolder folder_;
+    std::string script_ = folder_ / "one_rank.sh";
+};
+
+std::string preload(const std::string& library, const std::string& variable, const std::string& value) {
+    return "export LD_PRELOAD=" + library + " " + variable + "='" + value + "'";
+}
+
+// Longer than it takes to start the ranks and to hit one.
+Words long_render(const ScratchFolder& outputs, const std::string& machine) {
+    return {"render",
+            scene_file("centre"),
+            "-o",
+            outputs / "x.pfm",
+            "--quiet",
+            "--machine",
+            machine,
+            "--size",
+            machine == "torus" ? "2000" : "8000"};
+}
+
+}  // namespace
+
+TEST_CASE("mpirun: what one process would refuse is refused once, with rank and host", "[ranks][mpirun]") {
+    struct Case {
+        std::uint32_t ranks;
+        Words arguments;
+        int code;
+        Words message;
+    };
+    const ScratchFolder outputs;
+    const Case cases[] = {
+        {3, {"render", "none.nff", "-o", outputs / "x.pfm"}, 2, {"none.nff", "No such file"}},
+        {3, render(outputs, {"--pess", "8"}), 2, {"did you mean --pes?"}},
+        {3, render(outputs, {"--pes", "0"}), 2, {"--pes 0"}},
+        {3, render(outputs, {"--size", "16", "--pes", "2"}), 2, {"3 ranks for 2 PEs"}},
+        {3, render(outputs, {"--machine", "torus", "--nodes", "2x1x1"}), 2, {"3 ranks for 2 nodes"}},
+        {2, render(outputs, {"--device", "nosuch"}), 3, {"no OpenCL device matches"}},
+        {2, {"devices"}, 2, {"devices runs in one process"}},
+        {2, {"bench"}, 2, {"bench runs in one process"}},
+        {2, {"verify", "--quick"}, 2, {"verify runs in one process"}},
+        {2, {"generate", "uniform", "9", "-o", outputs / "u.nff"}, 2, {"generate runs in one process"}}};
+    for (const Mpi& mpi : mpis_here())
+        for (const Case& c : cases) {
+            const RanksOutcome run = run_ranks(mpi, on(mpi, c.ranks, c.arguments));
+            Words message = c.message;
+            message.push_back("raya: rank ");
+            check_told(outputs, run, c.code, message);
+        }
+}
+
+TEST_CASE("mpirun: ranks with other arguments refuse to start together", "[ranks][mpirun]") {
+    const ScratchFolder outputs;
+    for (const Mpi& mpi : mpis_here()) {
+        Words words = on(mpi, 1, render(outputs)), others = on(mpi, 2, render(outputs, {"--pes", "8"}));
+        words.push_back(":");
+        words.insert(words.end(), others.begin(), others.end());
+        check_told(outputs, run_ranks(mpi, words), 2, {"raya: rank ", "other arguments than rank 0"});
+    }
+}
+
+TEST_CASE("mpirun: of another MPI is refused by one line", "[ranks][mpirun]") {
+    const ScratchFolder outputs;
+    const std::vector<Mpi> mpis = mpis_here();
+    for (const Mpi& mpi : mpis)
+        for (const Mpi& other : mpis)
+            if (mpi.launcher != other.launcher)
+                check_told(outputs, run_ranks(mpi, on(other, 2, render(outputs))), 2,
+                           {"raya: started as one of 2 processes, but ", "remedy: the mpirun of that MPI"});
+}
+
+TEST_CASE("mpirun: a device that fails, or its driver, on one rank", "[ranks][mpirun]") {
+    if (kSanitized) return;
+    const ScratchFolder outputs;
+    const OneRank one;
+    for (const Mpi& mpi : mpis_here())
+        for (const std::uint32_t rank : {0u, 2u}) {
+            const std::string name = "raya: rank " + std::to_string(rank) + " on ";
+            const auto run = [&](const std::string& fault, const Words& options) {
+                return run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", fault),
+                                                render(outputs, options)));
+            };
+            const Words ring = {"--size", "64", "--pes", "8"}, torus = {"--size", "32", "--machine", "torus"};
+            const Words failed = {name, "clEnqueueNDRangeKernel failed"};
+            check_told(outputs, run("clEnqueueNDRangeKernel 1 -4", ring), 3, failed);
+            check_told(outputs, run("clEnqueueNDRangeKernel 20 -4", torus), 3, failed);
+            check_told(outputs, run("clCreateContext 1 -6", ring), 3, {name});
+            const RanksOutcome crash = run("clEnqueueNDRangeKernel 1 crash", ring);
+            CHECK_THAT(crash.err, Catch::Contains(name));
+            CHECK_THAT(crash.err, Catch::Contains("the OpenCL driver crashed (SIGSEGV)"));
+            check_ended(outputs, crash, 1);  // MPICH's mpirun has a code of its own
+            check_ended(outputs, run("clEnqueueNDRangeKernel 1 exit", ring), 0);
+        }
+}
+
+TEST_CASE("mpirun: a rank out of memory", "[ranks][mpirun]") {
+    if (kSanitized) return;
+    const ScratchFolder outputs;
+    const OneRank one;
+    const Words large = render(outputs, {"--machine", "grande", "--size", "600"});
+    for (const Mpi& mpi : mpis_here()) {
+        run_ranks(mpi, on(mpi, 2, large));  // its kernels are built now
+        std::filesystem::remove(outputs / "x.pfm");
+        for (const std::uint32_t rank : {0u, 2u})
+            check_told(
+                outputs,
+                run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"), large)),
+                2, {"raya: rank " + std::to_string(rank) + " on ", "out of memory on the host"});
+        // The system's limit may meet raya, the driver or MPI.
+        check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 0, "ulimit -v 400000", large)), 2);
+    }
+}
+
+TEST_CASE("mpirun: a full disk where rank 0 writes", "[ranks][mpirun]") {
+    const ScratchFolder outputs;
+    const std::string folder = std::filesystem::canonical(outputs.path()).string();
+    const Surroundings full{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
+                                          {"RAYA_FULL_DISK", "100000 " + folder},
+                                          {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}};
+    for (const Mpi& mpi : mpis_here())
+        check_told(outputs, run_ranks(mpi, on(mpi, 3, render(outputs, {"--size", "512"})), 0, {}, full), 2,
+                   {"raya: rank 0 on ", "x.pfm", "No space left on device"});
+}
+
+TEST_CASE("mpirun: a rank that is killed, Ctrl-C and its kin end all ranks", "[ranks][mpirun]") {
+    const ScratchFolder outputs;
+    for (const Mpi& mpi : mpis_here())
+        for (const char* machine : {"grande", "torus"}) {
+            const Words words = on(mpi, 3, long_render(outputs, machine));
+            for (const std::uint32_t rank : {0u, 2u})
+                check_ended(outputs, run_ranks(mpi, words, 3, {.signal = SIGKILL, .rank = rank}), 0);
+            for (const int signal : {SIGINT, SIGTERM})
+                check_ended(outputs, run_ranks(mpi, words, 3, {.signal = signal}), 1);
+        }
+}
+
+TEST_CASE("mpirun: a rank that hangs is given up after RAYA_RANK_TIMEOUT", "[ranks][mpirun]") {
+    const ScratchFolder outputs;
+    for (const Mpi& mpi : mpis_here()) {
+        const RanksOutcome run = run_ranks(mpi, on(mpi, 3, long_render(outputs, "torus")), 3,
+                                           {.signal = SIGSTOP, .rank = 2}, {.variables = {{"RAYA_RANK_TIMEOUT", "2"}}});
+        check_told(outputs, run, 3, {"has waited for the other ranks for 2 s", "RAYA_RANK_TIMEOUT"});
+    }
+}
+
+TEST_CASE("mpirun: a process that ends before it has reached MPI does not leave the others waiting",
+          "[ranks][mpirun]") {
+    const ScratchFolder outputs;
+    const OneRank one;
+    const Surroundings hasty{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};
+    for (const Mpi& mpi : mpis_here())
+        for (const char* end : {"exit 1", "kill -KILL $$"})
+            check_ended(outputs, run_ranks(mpi, one.words(mpi, 3, 2, end, render(outputs)), 0, {}, hasty), 1);
+}
+
+}  // namespace raya

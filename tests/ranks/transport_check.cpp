@@ -1,0 +1,109 @@
+// Every call of MPI's transport with bytes that are known, from none to more than a message of MPI's eager kind: under
+// mpirun, and there under Valgrind or with sanitizers, which learn little of a whole render in a driver.
+#include <fmt/core.h>
+
+#include <memory>
+#include <vector>
+
+#include "host/files/module.hpp"
+#include "host/ranks/mpi_module.hpp"
+#include "host/ranks/ranks.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kSizes[] = {0, 1, 3, 1000, 65'536, (1 << 20) + 1, 5 << 20};
+constexpr int kTags = 4;
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// What a rank sends by a tag: no two ranks or tags the same, and no two neighbouring bytes.
+Bytes known_bytes(std::size_t size, std::uint32_t rank, std::uint32_t to, int tag) {
+    Bytes bytes(size);
+    for (std::size_t i = 0; i < size; ++i)
+        bytes[i] = static_cast<std::uint8_t>((i * 37 + i / 251) ^ (rank * 59 + to * 17 + static_cast<unsigned>(tag)));
+    return bytes;
+}
+
+struct Checks {
+    std::uint32_t done = 0, wrong = 0;
+
+    void same(const Bytes& got, const Bytes& expected) {
+        ++done;
+        wrong += got != expected;
+    }
+};
+
+void check_broadcast(Ranks& ranks, std::size_t size, Checks& checks) {
+    const Bytes expected = known_bytes(size, 0, 0, 0);
+    Bytes bytes = ranks.first() ? expected : Bytes();
+    ranks.broadcast(bytes);
+    checks.same(bytes, expected);
+}
+
+// Of some ranks nothing.
+void check_gathers(Ranks& ranks, std::size_t size, Checks& checks) {
+    const auto bytes_of = [size](std::uint32_t rank) { return known_bytes(size * (rank % 3), rank, 0, 0); };
+    Bytes expected;
+    std::vector<std::size_t> sizes;
+    for (std::uint32_t rank = 0; rank < ranks.count(); ++rank) {
+        const Bytes bytes = bytes_of(rank);
+        expected.insert(expected.end(), bytes.begin(), bytes.end());
+        sizes.push_back(bytes.size());
+    }
+    const Bytes own = bytes_of(ranks.rank());
+    const std::span<const std::uint8_t> span(own);
+    checks.same(ranks.all_gather(span), expected);
+    checks.same(ranks.gather(span, sizes), ranks.first() ? expected : Bytes());
+}
+
+// To both neighbours of a ring of ranks at once, by several tags, which arrive out of turn; of two ranks both
+// neighbours are the same one, and of one it is itself.
+void check_neighbours(Ranks& ranks, std::size_t size, Checks& checks) {
+    const std::uint32_t count = ranks.count(), own = ranks.rank();
+    struct Message {
+        std::uint32_t partner;
+        int tag;
+        Bytes bytes;
+    };
+    std::vector<Message> sent, received;
+    for (int tag = 0; tag < kTags; ++tag) {
+        const std::uint32_t step = tag % 2 == 0 ? 1 : count - 1;
+        const std::uint32_t to = (own + step) % count, from = (own + count - step) % count;
+        const std::size_t bytes = size + static_cast<std::size_t>(tag);
+        sent.push_back({to, tag, known_bytes(bytes, own, to, tag)});
+        received.insert(received.begin(), {from, tag, Bytes(bytes)});
+    }
+    std::vector<Outgoing> out;
+    std::vector<Incoming> in;
+    for (const Message& m : sent) out.push_back({m.partner, m.tag, std::as_bytes(std::span(m.bytes))});
+    for (Message& m : received) in.push_back({m.partner, m.tag, std::as_writable_bytes(std::span(m.bytes))});
+    ranks.start(out, in);
+    ranks.wait();
+    for (const Message& m : received) checks.same(m.bytes, known_bytes(m.bytes.size(), m.partner, own, m.tag));
+}
+
+int check_all(Ranks& ranks) {
+    Checks checks;
+    for (const std::size_t size : kSizes) {
+        check_broadcast(ranks, size, checks);
+        check_gathers(ranks, size, checks);
+        check_neighbours(ranks, size, checks);
+        ranks.look();
+    }
+    std::uint32_t wrong = 0;
+    for (const std::uint32_t of_rank : ranks.all_gather(checks.wrong)) wrong += of_rank;
+    if (ranks.first())
+        fmt::print("{} on {} ranks: {} checks in each, {} wrong\n", ranks.library(), ranks.count(), checks.done, wrong);
+    return ranks.close(wrong == 0 ? 0 : 1);
+}
+
+}  // namespace
+}  // namespace raya
+
+int main() {
+    constexpr double kPatience = 60;  // seconds
+    auto* const open = reinterpret_cast<raya::OpenMpi*>(raya::module_function(raya::kMpiModule, raya::kOpenMpi));
+    raya::Ranks ranks{std::unique_ptr<raya::Transport>(open(kPatience))};
+    return raya::check_all(ranks);
+}
