@@ -56,7 +56,8 @@ TEST_CASE("RAYA_BUILD_OPTIONS goes to every build, into the report and into the 
 TEST_CASE("an unknown device ends with the list of those that there are", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    const Words message = {"no OpenCL device matches 'nosuch'", "remedy: a number, a type or a part of a name", "\n  0: "};
+    const Words message = {"no OpenCL device matches 'nosuch'", "remedy: a number, a type or a part of a name",
+                           "\n  0: "};
     check_refused(outputs, render_into(outputs, scene, {"--device", "nosuch"}), 3, message);
     check_refused(outputs, render_into(outputs, scene), 3, message, {.variables = {{"RAYA_DEVICE", "nosuch"}}});
     check_refused(outputs, {"bench", "--device", "nosuch"}, 3, message);
@@ -99,6 +100,16 @@ TEST_CASE("a damaged cache of the driver's ends with a remedy", "[cli]") {
     REQUIRE(damaged > 0);
     check_refused(outputs, words, 3, {"the OpenCL driver crashed (SIGABRT) while building program", "empty folder"},
                   around);
+}
+
+TEST_CASE("memory that runs out while the driver builds a kernel ends the program, though the driver stays locked",
+          "[cli]") {
+    if (kSanitized) return;
+    const ScratchFolder cache, outputs;
+    Surroundings around = failing_device("new 1000000 0");
+    around.variables.emplace_back("POCL_CACHE_DIR", cache.path());
+    check_refused(outputs, render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8"}), 2,
+                  {"out of memory on the host"}, around);
 }
 
 TEST_CASE("where PoCL's cache may not be written, the build's failure says so; without any place one is found",
