@@ -1,0 +1,109 @@
+// Ranks with devices of their own: kinds that differ, memories that are too small for one; and what is told of them.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "host/files/temporary_folder.hpp"
+#include "tests/document.hpp"
+#include "tests/ranks/run_ranks.hpp"
+#include "tests/report/trace_schema.hpp"
+
+namespace raya {
+namespace {
+
+std::string hash_of(const std::filesystem::path& report) {
+    return Document::parse(file_contents(report))["image"]["hash"];
+}
+
+}  // namespace
+
+TEST_CASE("ranks with devices of different kinds make one image", "[ranks][mpi]") {
+    const TemporaryFolder folder("raya-ranks");
+    const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
+    const std::string image = folder.path() / "i.pfm";
+    const std::vector<std::string> render = {"render", scene_file("glass"), "--size", "48", "--antialias",
+                                             "filter", "--quiet",           "-o",     image};
+    std::vector<std::string> alone = render;
+    alone.insert(alone.end(), {"--report", one});
+    REQUIRE(run_raya(alone).code == 0);
+    for (const Mpi& mpi : mpis_here()) {
+        std::vector<std::string> words = {"-n", "3", mpi.program};
+        words.insert(words.end(), render.begin(), render.end());
+        words.insert(words.end(), {"--report", many, "--device", "pthread,basic"});
+        const RanksOutcome outcome = run_ranks(mpi, words, 0, {}, {.variables = {{"POCL_DEVICES", "pthread basic"}}});
+        INFO(outcome.told());
+        REQUIRE(outcome.code == 0);
+        CHECK(hash_of(many) == hash_of(one));
+        std::vector<std::string> devices;
+        const Document report = Document::parse(file_contents(many));
+        for (const Document& rank : report["measured"]["ranks"])
+            devices.push_back(rank["device"]["name"].get<std::string>().substr(0, 5));
+        CHECK(devices == std::vector<std::string>{"pthre", "basic", "pthre"});
+    }
+}
+
+TEST_CASE("a torus's scene that no device here could hold is rendered on several", "[ranks][mpi]") {
+    const TemporaryFolder folder("raya-ranks");
+    const std::string scene = folder.path() / "u.nff", image = folder.path() / "i.pfm";
+    const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
+    REQUIRE(run_raya({"generate", "uniform", "60000", "--voxels", "4x4x4", "-o", scene}).code == 0);
+    REQUIRE(run_raya({"render", scene, "--machine", "grande", "--accel", "bvh", "--size", "32", "--quiet", "-o", image,
+                      "--report", one})
+                .code == 0);
+    const std::vector<std::string> torus = {"render",  scene,     "--machine", "torus",       "--size",
+                                            "32",      "--queue", "64",        "--pe-memory", "100000000",
+                                            "--quiet", "-o",      image,       "--report",    many};
+    // CL_DEVICE_MAX_MEM_ALLOC_SIZE: the words of all nodes take 1.4 MB.
+    const Surroundings small{
+        .variables = {{"LD_PRELOAD", RAYA_CL_FAULTS}, {"RAYA_FAULT", "clGetDeviceInfo 4112 1000000"}}};
+    const Outcome refused = run_raya(torus, small);
+    INFO(refused.told());
+    CHECK(refused.code == 3);
+    CHECK(contains(refused.err, "node memories"));
+    for (const Mpi& mpi : mpis_here()) {
+        std::vector<std::string> words = {"-n",
+                                          "4",
+                                          "env",
+                                          small.variables[0].first + "=" + small.variables[0].second,
+                                          small.variables[1].first + "=" + small.variables[1].second,
+                                          mpi.program};
+        words.insert(words.end(), torus.begin(), torus.end());
+        const RanksOutcome outcome = run_ranks(mpi, words);
+        INFO(outcome.told());
+        REQUIRE(outcome.code == 0);
+        CHECK(hash_of(many) == hash_of(one));
+    }
+}
+
+TEST_CASE("a trace has host and device of every rank, by one clock", "[ranks][mpi]") {
+    const TemporaryFolder folder("raya-ranks");
+    const std::filesystem::path trace = folder.path() / "t.json", report = folder.path() / "r.json";
+    for (const Mpi& mpi : mpis_here())
+        for (const char* machine : {"spa", "torus"}) {
+            const RanksOutcome outcome =
+                run_ranks(mpi, {"-n", "3", mpi.program, "render", scene_file("spheres"), "--size", "32", "--machine",
+                                machine, "-o", folder.path() / "i.pfm", "--trace", trace, "--report", report});
+            INFO(outcome.told());
+            REQUIRE(outcome.code == 0);
+            CHECK(contains(outcome.out, "ranks   3 on 1 host"));
+            const Document file = Document::parse(file_contents(trace));
+            CHECK(TraceSchema(file).faults().empty());
+            CHECK(file["otherData"]["rank_clocks"].size() == 3);
+            std::set<std::string> names;
+            for (const Document& event : file["traceEvents"])
+                if (event["name"] == "process_name")
+                    names.insert(event["args"]["name"].get<std::string>().substr(0, 12));
+            for (const char* name :
+                 {"rank 0 host ", "rank 1 host ", "rank 2 host ", "rank 0 devic", "rank 1 devic", "rank 2 devic"})
+                CHECK(names.count(name) == 1);
+            std::uint64_t messages = 0;
+            const Document all = Document::parse(file_contents(report));
+            for (const Document& rank : all["measured"]["ranks"]) {
+                messages += rank["messages_sent"].get<std::uint64_t>();
+                CHECK(rank["waiting_s"].get<double>() <= rank["render_s"].get<double>());
+                CHECK(!rank["commands"].empty());
+            }
+            CHECK(messages > 0);
+        }
+}
+
+}  // namespace raya
