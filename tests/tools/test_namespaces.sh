@@ -1,0 +1,123 @@
+#!/usr/bin/env bash
+# Ranks on two hosts that TCP alone joins, the image being the one of a single process; once more where packets are late and some are lost.
+#   tests/tools/test_namespaces.sh RAYA [MPIRUN]      the built program, with raya_mpi.so beside it; Open MPI's launcher, else `mpirun`
+# A host is a network namespace with a host name, a /etc/hosts and a disk of its own: files of rank 0 are not there on the other. Exit code 77
+# where there is no such thing: it takes root, iproute2, /dev/net/tun and Open MPI.
+set -euo pipefail
+raya=$(readlink -f "$1")
+tools=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
+scenes=$tools/../../scenes
+
+skip() { echo "skipped: $1"; exit 77; }
+((EUID == 0)) || skip "not root, who alone makes network namespaces"
+command -v ip >/dev/null || skip "no ip (Debian: iproute2)"
+(: <>/dev/net/tun) 2>/dev/null || skip "no /dev/net/tun"
+[[ -e $(dirname "$raya")/raya_mpi.so ]] || skip "raya was built without MPI"
+mpirun=$(command -v "${2:-mpirun}") || skip "no ${2:-mpirun}"
+# Its mpirun calls itself Open MPI, its mpiexec OpenRTE. MPICH 4.0 hangs over TCP now and then: in MPI_Finalize one rank waits in a barrier while
+# another needs its answer (pmodels/mpich pull request 6596).
+[[ $("$mpirun" --version) == *Open* ]] || skip "$mpirun is not Open MPI's"
+
+hosts=("raya-$$-a" "raya-$$-b")  # two runs of this script do not meet
+scratch=$(mktemp -d)
+disk=$scratch/disk  # where each host has its own, which is $scratch/HOST
+export POCL_CACHE_DIR=${POCL_CACHE_DIR:-$scratch/kernels}
+mkdir -p "$disk" "$POCL_CACHE_DIR"
+slow_link=
+clean() {
+    [[ -z $slow_link ]] || kill -KILL "$slow_link" 2>/dev/null || true
+    for host in "${hosts[@]}"; do
+        ip netns pids "$host" 2>/dev/null | xargs -r kill -KILL 2>/dev/null || true  # of a run that hung
+        ip netns del "$host" 2>/dev/null || true
+    done
+    rm -rf "$scratch"
+}
+trap clean EXIT
+fail() { echo "FAILED: $*"; exit 1; }
+
+for host in "${hosts[@]}"; do
+    ip netns add "$host" 2>"$scratch/said" || skip "no network namespaces: $(head -n 1 "$scratch/said")"
+    ip -n "$host" link set lo up
+done
+number_link() {
+    for i in 0 1; do
+        ip -n "${hosts[i]}" address add "10.83.18.$((i + 1))/24" dev link0
+        ip -n "${hosts[i]}" link set link0 up
+    done
+    for host in "${hosts[@]}"; do  # the kernel takes its time
+        timeout 10 sh -c "until ip -n $host link show link0 | grep -qE 'state (UP|UNKNOWN)'; do sleep 0.1; done" || fail "the link of $host stays down"
+    done
+}
+
+# In place of ssh: on_host HOST COMMAND..., whose words become one line for the shell there, as ssh has it.
+cat >"$scratch/on_host" <<END
+#!/bin/sh
+export host=\$1
+shift
+export line="\$*"
+exec ip netns exec "\$host" unshare --uts sh -c '
+    hostname "\$host" && mount --bind "$scratch/hosts" /etc/hosts && mount --bind "$scratch/\$host" "$disk" && exec sh -c "\$line"'
+END
+chmod 755 "$scratch/on_host"
+printf '%s\n' "127.0.0.1 localhost" "10.83.18.1 ${hosts[0]}" "10.83.18.2 ${hosts[1]}" >"$scratch/hosts"
+both=${hosts[0]},${hosts[1]}
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+export OMPI_MCA_plm_rsh_agent=$scratch/on_host OMPI_MCA_pml=ob1 OMPI_MCA_btl=tcp,self
+launch="$mpirun --bind-to none --host $both"
+
+bytes_on_link() { ip netns exec "${hosts[0]}" cat /sys/class/net/link0/statistics/{r,t}x_bytes | awk '{ bytes += $1 } END { print bytes }'; }
+
+compare() {  # compare NAME REPORT_ALONE REPORT_OF_RANKS BYTES_ON_LINK
+    python3 - "$@" "${hosts[@]}" <<'END'
+import json, sys
+name, carried, hosts = sys.argv[1], int(sys.argv[4]), sys.argv[5:]
+alone, found = (json.load(open(path)) for path in sys.argv[2:4])
+ranks = found["measured"]["ranks"]
+messages, sent = (sum(rank[key] for rank in ranks) for key in ("messages_sent", "bytes_sent"))
+print(f"{name}: {messages} messages, {sent} bytes of {carried} on the link, "
+      f"rendered in {1000 * found['measured']['render_s']:.1f} ms, alone in {1000 * alone['measured']['render_s']:.1f} ms")
+for what, right in {
+    "the image of one process": found["image"]["hash"] == alone["image"]["hash"],
+    "the two hosts": [rank["host"] for rank in ranks] == hosts,
+    "all messages on the link": carried >= sent > 0,
+}.items():
+    if not right:
+        sys.exit(f"FAILED: {name}: not {what}")
+END
+}
+
+check() {  # check NAME SCENE OPTION...: without MPI, then on one rank for each host
+    local name=$1 scene=$2 host before
+    shift 2
+    "$raya" render "$scenes/$scene.nff" "$@" --quiet -o "$scratch/image.pfm" --report "$scratch/alone.json"
+    for host in "${hosts[@]}"; do
+        mkdir -p "$scratch/$host/kernels"
+        rm -f "$scratch/$host"/{scene,image,report}.*
+        cp -ru "$POCL_CACHE_DIR/." "$scratch/$host/kernels"
+    done
+    cp "$scenes/$scene.nff" "$scratch/${hosts[0]}/scene.nff"
+    before=$(bytes_on_link)
+    POCL_CACHE_DIR=$disk/kernels timeout 60 "$scratch/on_host" "${hosts[0]}" \
+        "$launch -n 2 $raya render $disk/scene.nff $* --quiet -o $disk/image.pfm --report $disk/report.json" || fail "$name: exit code $?"
+    cmp "$scratch/image.pfm" "$scratch/${hosts[0]}/image.pfm" || fail "$name: another picture"
+    compare "$name" "$scratch/alone.json" "$scratch/${hosts[0]}/report.json" $(($(bytes_on_link) - before))
+}
+
+ip -n "${hosts[0]}" link add link0 type veth peer name link0 netns "${hosts[1]}" 2>"$scratch/said" || skip "no veth: $(head -n 1 "$scratch/said")"
+number_link
+check ring centre --antialias filter --size 24
+check torus planes --machine torus --nodes 2x2x1 --size 16
+
+ip -n "${hosts[0]}" link del link0
+"$tools/slow_link.py" "${hosts[@]}" 5 100 >"$scratch/slow_link" &
+slow_link=$!
+timeout 10 sh -c "until grep -q ready '$scratch/slow_link'; do sleep 0.1; done" || fail "no slow link"
+number_link
+check "ring, slow link" centre --antialias filter --size 12 --pes 50 --offset 5
+check "torus, slow link" planes --machine torus --nodes 2x1x1 --size 8
+kill "$slow_link"
+wait "$slow_link"
+slow_link=
+lost=$(tail -n 1 "$scratch/slow_link")
+[[ $lost == *" packets, "[1-9]*" lost" ]] || fail "no packet was lost: $lost"
+echo "two hosts over TCP, the same images; slow link: 5 ms, $lost"
