@@ -1,6 +1,7 @@
 // raya study NAME [SCENE...] -o DIR: the load laboratory: files of one study, or with `all` of every one, and a
 // document to read.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -31,6 +32,7 @@ struct LaboratoryCommand {
     std::string folder, device;
     std::optional<std::uint32_t> size;
     std::vector<std::string> scenes;
+    std::vector<double> network;  // alpha in microseconds, beta in nanoseconds a byte
     bool strict = false;
 };
 
@@ -40,6 +42,17 @@ std::uint32_t side_of(const LaboratoryCommand& command) {
     if (*command.size < kSmallest || *command.size > kLargest)
         throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kSmallest, kLargest));
     return *command.size;
+}
+
+std::optional<Network> network_of(const LaboratoryCommand& command) {
+    if (command.network.empty()) return {};
+    const std::vector<double>& n = command.network;
+    const auto is_time = [](double time) { return time >= 0 && time <= 1e9; };
+    if (n.size() != 2 || !is_time(n[0]) || !is_time(n[1]))
+        throw UserError(
+            fmt::format("--network {}: must be two numbers, 0..10^9: microseconds a message, nanoseconds a byte",
+                        fmt::join(n, ",")));
+    return Network{1e-6 * n[0], 1e-9 * n[1]};
 }
 
 bool names_a_study(const std::string& word) {
@@ -86,6 +99,7 @@ RunRecord record_of(const Study& study, const LaboratoryCommand& command, const 
         if (study.one_scene) break;
     }
     if (command.size) line += fmt::format(" --size {}", *command.size);
+    if (!command.network.empty()) line += fmt::format(" --network {}", fmt::join(command.network, ","));
     if (command.strict) line += " --strict";
     if (!command.device.empty()) line += " --device " + quoted(command.device);
     return {RAYA_VERSION, line + " -o DIR", device.name, device.platform, device.driver};
@@ -113,6 +127,7 @@ std::vector<Study> runnable(std::span<const Study> wanted) {
 }
 
 void run_studies(const LaboratoryCommand& command, std::span<const Study> asked) {
+    const std::optional<Network> network = network_of(command);
     const std::vector<Study> wanted = runnable(asked);
     if (wanted.size() == 1 && wanted.front().one_scene && command.scenes.size() > 1)
         throw UserError(
@@ -128,7 +143,7 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> asked)
     ProgressBar bar(true, "preparing");
     Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
     const StudyFolder made(command.folder, files);
-    Laboratory laboratory(session, side);
+    Laboratory laboratory(session, side, network);
     std::vector<StudyPage> pages;
     std::vector<PlotOutcome> plots;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -160,6 +175,13 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
     add_value(*command, "--size", options->size,
               "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");
+    if (wanted.front().name == "ranks")
+        add_value(*command, "--network", options->network,
+                  "A network of yours beside those of the study: what a message takes in microseconds, and a byte in "
+                  "nanoseconds; such as 30,0.8")
+            ->delimiter(',')
+            ->allow_extra_args(false)  // what follows is a scene
+            ->type_name("ALPHA,BETA");
     add_strict_option(*command, options->strict);
     add_device_option(*command, options->device);
     command->callback([options, wanted] { run_studies(*options, wanted); });

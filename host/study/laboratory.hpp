@@ -2,12 +2,14 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/cl/commands.hpp"
 #include "host/machine/machine.hpp"
 #include "host/machine/number_format.hpp"
+#include "host/ranks/ping.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/ring/cost_image.hpp"
 #include "host/study/scenes.hpp"
@@ -35,12 +37,15 @@ NumberFormat format_for(const Scene& scene);
 /// size and method, and keeps what their pixels cost.
 class Laboratory {
   public:
-    /// `size`: pixels a side of the studies' images; 0: what the study takes by default.
-    Laboratory(Session& session, std::uint32_t size) : session_(session), size_(size) {}
+    /// `size`: pixels a side of the studies' images; 0: what the study takes by default. `network`: the user's, for
+    /// those that model one.
+    Laboratory(Session& session, std::uint32_t size, const std::optional<Network>& network = {})
+        : session_(session), size_(size), network_(network) {}
 
     /// The size that was asked for, else `usual`.
     std::uint32_t size(std::uint32_t usual) const { return size_ ? size_ : usual; }
     Session& session() { return session_; }
+    const std::optional<Network>& network() const { return network_; }
 
     /// Stays valid as long as the laboratory. Throws UserError, DeviceError as RingRenderer does.
     const Costs& costs(const LabelledScene& scene, std::uint32_t size, AntialiasMethod method = AntialiasMethod::kNone);
@@ -55,6 +60,7 @@ class Laboratory {
 
     Session& session_;
     std::uint32_t size_;
+    std::optional<Network> network_;
     std::vector<Known> known_;
 };
 

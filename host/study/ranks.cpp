@@ -55,12 +55,14 @@ struct Check {
 };
 using Checks = std::vector<Check>;
 
-Networks networks_of(const PingReport& ping) {
-    return {{kHere, fmt::format("fitted to the ping-pong, {}", ping.library), ping.network},
-            {"10 GbE", "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes", {30e-6, 0.8e-9}},
-            {"InfiniBand HDR",
-             "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and what MPI adds",
-             {1e-6, 0.04e-9}}};
+Networks networks_of(const PingReport& ping, const std::optional<Network>& given) {
+    Networks networks = {{kHere, fmt::format("fitted to the ping-pong, {}", ping.library), ping.network},
+                         {"10 GbE", "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes", {30e-6, 0.8e-9}},
+                         {"InfiniBand HDR",
+                          "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and what MPI adds",
+                          {1e-6, 0.04e-9}}};
+    if (given) networks.push_back({"given", "given with --network", *given});
+    return networks;
 }
 
 Rows rows_of(const RankedMachine& machine, const MeasuredWork& one, const Networks& networks) {
@@ -241,7 +243,7 @@ Found find(Laboratory& lab, const LabelledScene& on_ring, const LabelledScene& o
     write_whole_file(torus_file, write_nff(on_torus.scene));
     const OtherLoad load;
     const RanksHere here = look_around(mpirun);
-    Found found{{}, {}, here.ping, networks_of(here.ping), {}};
+    Found found{{}, {}, here.ping, networks_of(here.ping, lab.network()), {}};
     for (const RankedMachine& machine : {ring_on_ranks(lab, on_ring, ring_file, sizes.ring),
                                          torus_on_ranks(lab.session(), on_torus, torus_file, sizes.torus)}) {
         const std::vector<RankTrial> trials = measure(mpirun, machine, here, lab.session().device());

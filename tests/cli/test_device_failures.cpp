@@ -28,7 +28,7 @@ TEST_CASE("a kernel that does not compile ends with device, options and build lo
 TEST_CASE("a device that ends a loop early is found by its pixels, and nothing is written", "[cli]") {
     const ScratchFolder kernels, outputs;
     const SourcePatch early{"ring/trace.cl", "store.points = points;",
-                            "store.points = points; store.end -= pe == 3 && store.end > 0;"};
+                            "store.points = points; store.end -= group == 3 && store.end > 0;"};
     const std::string broken = write_kernels(kernels / "kernels", {early}), planes = scene_file("planes");
     for (const char* method : {"none", "supersample"}) {
         CAPTURE(method);

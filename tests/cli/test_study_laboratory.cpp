@@ -106,6 +106,9 @@ TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind"
                       {std::string("--size ") + size + ":", "17..4096"});
     for (const char* size : {"32x16", "-1", "1e2", "wide", ""})
         check_refused(outputs, study("fig8", outputs, {"--size", size}), 2, {"--size"});
+    for (const char* network : {"30", "1,2,3", "-1,0", "1,nan", "2e9,1", "fast,1"})
+        check_refused(outputs, study("ranks", outputs, {"--network", network}), 2, {"--network"});
+    check_refused(outputs, study("fig8", outputs, {"--network", "30,1"}), 2, {"--network"});
     check_refused(outputs, study("fig8", outputs, {"--size", "99999999999"}), 2, {"--size", "99999999999"});
     check_refused(outputs, study("fig8", outputs, {outputs / "none.nff"}), 2, {"none.nff", "cannot read"});
     check_refused(outputs, study("images", outputs, {scene_file("glass"), outputs / "none.nff"}), 2, {"none.nff"});

@@ -16,7 +16,7 @@ std::string hash_of(const std::filesystem::path& report) {
 
 }  // namespace
 
-TEST_CASE("ranks with devices of different kinds make one image", "[ranks][mpi]") {
+TEST_CASE("ranks with devices of different kinds make one image", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
     const std::string image = folder.path() / "i.pfm";
@@ -41,7 +41,7 @@ TEST_CASE("ranks with devices of different kinds make one image", "[ranks][mpi]"
     }
 }
 
-TEST_CASE("a torus's scene that no device here could hold is rendered on several", "[ranks][mpi]") {
+TEST_CASE("a torus's scene that no device here could hold is rendered on several", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::string scene = folder.path() / "u.nff", image = folder.path() / "i.pfm";
     const std::filesystem::path one = folder.path() / "one.json", many = folder.path() / "many.json";
@@ -74,7 +74,7 @@ TEST_CASE("a torus's scene that no device here could hold is rendered on several
     }
 }
 
-TEST_CASE("a trace has host and device of every rank, by one clock", "[ranks][mpi]") {
+TEST_CASE("a trace has host and device of every rank, by one clock", "[ranks][.mpirun]") {
     const TemporaryFolder folder("raya-ranks");
     const std::filesystem::path trace = folder.path() / "t.json", report = folder.path() / "r.json";
     for (const Mpi& mpi : mpis_here())

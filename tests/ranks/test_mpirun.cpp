@@ -49,7 +49,7 @@ void check_all_counts(const ScratchFolder& folder, const Words& render) {
         }
 }
 
-TEST_CASE("mpirun: pictures, counts and loads of the ring are those of one process", "[ranks][mpirun]") {
+TEST_CASE("mpirun: pictures, counts and loads of the ring are those of one process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const Words common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
                           "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
@@ -62,14 +62,14 @@ TEST_CASE("mpirun: pictures, counts and loads of the ring are those of one proce
     }
 }
 
-TEST_CASE("mpirun: picture, counts, loads and packets of the torus are those of one process", "[ranks][mpirun]") {
+TEST_CASE("mpirun: picture, counts, loads and packets of the torus are those of one process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     check_all_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report", folder / "x.json",
                               "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes", "3x2x2", "--size",
                               "16", "--group", "1", "--quiet"});
 }
 
-TEST_CASE("mpirun: what ranks send arrives, of any size, and from all to all", "[ranks][mpirun]") {
+TEST_CASE("mpirun: what ranks send arrives, of any size, and from all to all", "[ranks][.mpirun]") {
     for (const Mpi& mpi : mpis_here())
         for (const std::uint32_t count : {2u, 3u, 7u}) {
             const std::string program = std::filesystem::path(mpi.program).parent_path() / "transport_check";

@@ -83,7 +83,7 @@ Words long_render(const ScratchFolder& outputs, const std::string& machine) {
 
 }  // namespace
 
-TEST_CASE("mpirun: what one process would refuse is refused once, with rank and host", "[ranks][mpirun]") {
+TEST_CASE("mpirun: what one process would refuse is refused once, with rank and host", "[ranks][.mpirun]") {
     struct Case {
         std::uint32_t ranks;
         Words arguments;
@@ -111,7 +111,7 @@ TEST_CASE("mpirun: what one process would refuse is refused once, with rank and 
         }
 }
 
-TEST_CASE("mpirun: ranks with other arguments refuse to start together", "[ranks][mpirun]") {
+TEST_CASE("mpirun: ranks with other arguments refuse to start together", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     for (const Mpi& mpi : mpis_here()) {
         Words words = on(mpi, 1, render(outputs)), others = on(mpi, 2, render(outputs, {"--pes", "8"}));
@@ -121,7 +121,7 @@ TEST_CASE("mpirun: ranks with other arguments refuse to start together", "[ranks
     }
 }
 
-TEST_CASE("mpirun: of another MPI is refused by one line", "[ranks][mpirun]") {
+TEST_CASE("mpirun: of another MPI is refused by one line", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const std::vector<Mpi> mpis = mpis_here();
     for (const Mpi& mpi : mpis)
@@ -131,7 +131,7 @@ TEST_CASE("mpirun: of another MPI is refused by one line", "[ranks][mpirun]") {
                            {"raya: started as one of 2 processes, but ", "remedy: the mpirun of that MPI"});
 }
 
-TEST_CASE("mpirun: a device that fails, or its driver, on one rank", "[ranks][mpirun]") {
+TEST_CASE("mpirun: a device that fails, or its driver, on one rank", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
     const OneRank one;
@@ -155,7 +155,7 @@ TEST_CASE("mpirun: a device that fails, or its driver, on one rank", "[ranks][mp
         }
 }
 
-TEST_CASE("mpirun: a rank out of memory", "[ranks][mpirun]") {
+TEST_CASE("mpirun: a rank out of memory", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder outputs;
     const OneRank one;
@@ -173,7 +173,7 @@ TEST_CASE("mpirun: a rank out of memory", "[ranks][mpirun]") {
     }
 }
 
-TEST_CASE("mpirun: a full disk where rank 0 writes", "[ranks][mpirun]") {
+TEST_CASE("mpirun: a full disk where rank 0 writes", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const std::string folder = std::filesystem::canonical(outputs.path()).string();
     const Surroundings full{.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
@@ -184,7 +184,7 @@ TEST_CASE("mpirun: a full disk where rank 0 writes", "[ranks][mpirun]") {
                    {"raya: rank 0 on ", "x.pfm", "No space left on device"});
 }
 
-TEST_CASE("mpirun: a rank that is killed, Ctrl-C and its kin end all ranks", "[ranks][mpirun]") {
+TEST_CASE("mpirun: a rank that is killed, Ctrl-C and its kin end all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     for (const Mpi& mpi : mpis_here())
         for (const char* machine : {"grande", "torus"}) {
@@ -196,7 +196,7 @@ TEST_CASE("mpirun: a rank that is killed, Ctrl-C and its kin end all ranks", "[r
         }
 }
 
-TEST_CASE("mpirun: a rank that hangs is given up after RAYA_RANK_TIMEOUT", "[ranks][mpirun]") {
+TEST_CASE("mpirun: a rank that hangs is given up after RAYA_RANK_TIMEOUT", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     for (const Mpi& mpi : mpis_here()) {
         const RanksOutcome run = run_ranks(mpi, on(mpi, 3, long_render(outputs, "torus")), 3,
@@ -206,7 +206,7 @@ TEST_CASE("mpirun: a rank that hangs is given up after RAYA_RANK_TIMEOUT", "[ran
 }
 
 TEST_CASE("mpirun: a process that ends before it has reached MPI does not leave the others waiting",
-          "[ranks][mpirun]") {
+          "[ranks][.mpirun]") {
     const ScratchFolder outputs;
     const OneRank one;
     const Surroundings hasty{.variables = {{"RAYA_RANK_TIMEOUT", "2"}}};
