@@ -82,7 +82,8 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
     const int quarter = 1 << (format.exponent_bits - 2);
     unit_ = std::ldexp(format.truncates ? 1.0 : 0.5, -format.fraction_bits) + 0x1p-24;
     smallest_ = smallest_number(format);
-    stretch_ = std::ldexp(format.is_fp32() ? 32.0 : 16.0, -format.fraction_bits) + 0x1p-21;  // RAYA_STRETCH, and its own rounding
+    stretch_ = std::ldexp(format.is_fp32() ? 32.0 : 16.0, -format.fraction_bits) +
+               0x1p-21;  // RAYA_STRETCH, and its own rounding
     far_ = farthest_hit(format);
     square_room_ = std::ldexp(1.0, quarter - 1);
     extent_ = job.header().extent;
@@ -187,7 +188,8 @@ HitRegion HitRegions::cone(std::size_t at) const {
     region.along = height * axis;
     double widest = 0;
     for (const auto& [z, radius] : {std::pair{-beyond, r0}, std::pair{height + beyond, r1}}) {
-        const double outer = std::hypot(radius + std::abs(slope) * beyond, std::sqrt(error));
+        const double inner = radius + std::abs(slope) * beyond;
+        const double outer = std::sqrt(inner * inner + error);
         widest = std::max(widest, outer);
         Vec3 arm;
         for (int i = 0; i < 3; ++i) arm[i] = outer * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));

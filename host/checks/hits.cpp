@@ -18,7 +18,7 @@ Program built(Session& session, const HitBuild& build) {
     options.lanes = build.lanes;
     options.format = build.format;
     options.words_local = false;
-    options.accel = RAYA_ACCEL_GRID;
+    options.accel = build.grid ? RAYA_ACCEL_GRID : RAYA_ACCEL_NONE;
     options.filter = build.filter;
     return Kernels(session, options, build.sources).program("checks/hits.cl");
 }
@@ -92,7 +92,7 @@ std::string HitBuild::name() const {
 }
 
 HitRunner::HitRunner(Session& session, const HitBuild& build)
-    : CheckRunner(session, built(session, build), build.lanes), format_(build.format) {}
+    : CheckRunner(session, built(session, build), build.lanes), format_(build.format), grid_(build.grid) {}
 
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
                      const std::function<std::string(std::size_t)>& what, const std::string& done) {
@@ -120,13 +120,16 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
     }
     rays.pad();
     Verdict verdict;
-    for (const char* kernel : {"hits_of_all", "hits_by_search"}) {
+    std::vector<const char*> kernels = {"hits_of_all"};
+    if (runner.grid()) kernels.push_back("hits_by_search");
+    for (const char* kernel : kernels) {
         const Hits got = find_hits(runner, kernel, job.words(), rays);
         const auto what = [&](std::size_t i) {
             return fmt::format("{}: {} ({})", known.name, known.hits[i].what, kernel);
         };
-        verdict = compare_hits(expected, got, rays, known.hits.size(), what,
-                               fmt::format("{} rays, with and without grid", known.hits.size()));
+        verdict =
+            compare_hits(expected, got, rays, known.hits.size(), what,
+                         fmt::format("{} rays, {}without grid", known.hits.size(), runner.grid() ? "with and " : ""));
         if (verdict.outcome != Outcome::kPass) break;
     }
     return verdict;

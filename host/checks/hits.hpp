@@ -39,11 +39,12 @@ struct Hits {
 /// By `kernel`, hits_of_all or hits_by_search, of a job's words. The number of rays is a multiple of kMostLanes.
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job, const Rays& rays);
 
-/// How the kernels are built: for jobs with a grid.
+/// How the kernels are built.
 struct HitBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
     bool filter = false;  // of spheres
+    bool grid = true;     // false: without the search by a grid, of which the kernel is the longer part
     KernelSources sources{};
 
     /// "e6m15 filtered, 16 lanes"
@@ -54,19 +55,22 @@ class HitRunner : public CheckRunner {
   public:
     HitRunner(Session& session, const HitBuild& build);
     const NumberFormat& format() const { return format_; }
+    bool grid() const { return grid_; }
 
   private:
     NumberFormat format_;
+    bool grid_;
 };
 
 /// Of the first `count` rays: how many are wrong, with the first of them, of which `what` tells the name; else `done`.
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
                      const std::function<std::string(std::size_t)>& what, const std::string& done);
 
-/// Both kernels find the known hits.
+/// All kernels of the build find the known hits.
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
-/// What the grid finds is what testing all objects finds, on the same device: the walk decides nothing. By `rays` rays
+/// What the grid finds is what testing all objects finds, on the same device: the walk decides nothing. In a build with
+/// the grid, by `rays` rays
 /// in each of the scenes of scenes/ that are named; a multiple of kMostLanes.
 Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays);
 

@@ -12,7 +12,7 @@
 
 namespace raya {
 
-/// The program; `group_size`: L of its kernel turn_round, 1..64.
+/// The program; `group_size`: L of its kernel turn_round, 1..1024.
 CheckRunner machine_runner(Session& session, const KernelSources& sources, std::uint32_t group_size = 1);
 
 /// Owners of pixels, their numbers and neighbours, in so many cases of a kind of mapping

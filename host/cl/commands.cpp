@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -18,11 +20,14 @@ std::string copied(const std::string& from, const std::string& to) { return from
 
 }  // namespace
 
-Session::Session(const cl::Device& device, Timing timing)
+Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
     : device_(device), info_(device_info(device)), profile_(timing == Timing::kOn && info_.profiling) {
-    guarded(fmt::format("opening a session on {} {}", info_.platform, info_.name), [this] {
+    guarded(fmt::format("opening a session on {} {}", info_.platform, info_.name), [&] {
         context_ = cl::Context(device_);
-        queue_ = cl::CommandQueue(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
+        queue_ =
+            std::make_unique<cl::CommandQueue>(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
+        if (transfers == Transfers::kStaged || (transfers == Transfers::kOfDevice && info_.own_memory))
+            staging_ = std::make_unique<Staging>(context_, *queue_);
     });
 }
 
@@ -85,25 +90,65 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
                         what, local_bytes, info_.name, info_.local_memory_bytes));
     }
     submit(what, std::move(record), [&](cl::Event* event) {
-        queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
-                                    nullptr, event);
+        queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
+                                     nullptr, event);
     });
 }
 
 void Session::write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
                           std::size_t bytes, const void* from) {
     if (bytes == 0) return;
+    if (staging_) return write_staged(label, to, name, offset, bytes, static_cast<const std::byte*>(from));
     submit(fmt::format("'{}': writing {} bytes into buffer '{}'", label, bytes, name),
            {.label = label, .kind = "write", .bytes = bytes, .object = name},
-           [&](cl::Event* event) { queue_.enqueueWriteBuffer(to, CL_TRUE, offset, bytes, from, nullptr, event); });
+           [&](cl::Event* event) { queue_->enqueueWriteBuffer(to, CL_TRUE, offset, bytes, from, nullptr, event); });
 }
 
 void Session::read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                          std::size_t bytes, void* to) {
     if (bytes == 0) return;
+    if (staging_) return read_staged(label, from, name, offset, bytes, static_cast<std::byte*>(to));
     submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
            {.label = label, .kind = "read", .bytes = bytes, .object = name},
-           [&](cl::Event* event) { queue_.enqueueReadBuffer(from, CL_TRUE, offset, bytes, to, nullptr, event); });
+           [&](cl::Event* event) { queue_->enqueueReadBuffer(from, CL_TRUE, offset, bytes, to, nullptr, event); });
+}
+
+void Session::write_staged(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
+                           std::size_t bytes, const std::byte* from) {
+    for (std::size_t done = 0; done < bytes; done += Staging::kHalfBytes) {
+        const std::size_t part = std::min(bytes - done, Staging::kHalfBytes);
+        const std::string what = fmt::format("'{}': writing {} bytes into buffer '{}'", label, part, name);
+        Staging::Half& half = *guarded(what, [&] { return &staging_->next(); });
+        std::memcpy(half.memory, from + done, part);
+        submit(what, {.label = label, .kind = "write", .bytes = part, .object = name}, [&](cl::Event* event) {
+            queue_->enqueueWriteBuffer(to, CL_FALSE, offset + done, part, half.memory, nullptr, event);
+            half.last = *event;
+        });
+    }
+}
+
+void Session::read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+                          std::size_t bytes, std::byte* to) {
+    Staging::Half* before = nullptr;  // that the part from `taken` on is being read into
+    std::size_t taken = 0;
+    const std::string what = fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name);
+    const auto take = [&](std::size_t part) {
+        guarded(what, [&] { before->wait(); });
+        std::memcpy(to + taken, before->memory, part);
+        taken += part;
+    };
+    for (std::size_t done = 0; done < bytes; done += Staging::kHalfBytes) {
+        const std::size_t part = std::min(bytes - done, Staging::kHalfBytes);
+        Staging::Half& half = *guarded(what, [&] { return &staging_->next(); });
+        submit(what, {.label = label, .kind = "read", .bytes = part, .object = name}, [&](cl::Event* event) {
+            queue_->enqueueReadBuffer(from, CL_FALSE, offset + done, part, half.memory, nullptr, event);
+            half.last = *event;
+        });
+        guarded(what, [&] { queue_->flush(); });
+        if (before != nullptr) take(Staging::kHalfBytes);
+        before = &half;
+    }
+    take(bytes - taken);
 }
 
 void Session::copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes) {
@@ -111,7 +156,7 @@ void Session::copy_bytes(const std::string& label, const Place& from, const Plac
     submit(fmt::format("'{}': copying {} bytes of buffer '{}' into buffer '{}'", label, bytes, from.name, to.name),
            {.label = label, .kind = "copy", .bytes = bytes, .object = copied(from.name, to.name)},
            [&](cl::Event* event) {
-               queue_.enqueueCopyBuffer(from.memory, to.memory, from.offset, to.offset, bytes, nullptr, event);
+               queue_->enqueueCopyBuffer(from.memory, to.memory, from.offset, to.offset, bytes, nullptr, event);
            });
 }
 
@@ -122,8 +167,8 @@ void Session::copy_rows(const std::string& label, const Place& from, std::size_t
                        from.name, to.name),
            {.label = label, .kind = "copy", .bytes = bytes * rows, .object = copied(from.name, to.name)},
            [&](cl::Event* event) {
-               queue_.enqueueCopyBufferRect(from.memory, to.memory, {from.offset, 0, 0}, {to.offset, 0, 0},
-                                            {bytes, rows, 1}, from_pitch, 0, to_pitch, 0, nullptr, event);
+               queue_->enqueueCopyBufferRect(from.memory, to.memory, {from.offset, 0, 0}, {to.offset, 0, 0},
+                                             {bytes, rows, 1}, from_pitch, 0, to_pitch, 0, nullptr, event);
            });
 }
 
@@ -133,7 +178,7 @@ void Session::fill_bytes(const std::string& label, const cl::Buffer& to, const s
            {.label = label, .kind = "fill", .bytes = bytes, .object = name}, [&](cl::Event* event) {
                cl_event filled = nullptr;
                const cl_int code =
-                   clEnqueueFillBuffer(queue_(), to(), value, value_bytes, 0, bytes, 0, nullptr, &filled);
+                   clEnqueueFillBuffer((*queue_)(), to(), value, value_bytes, 0, bytes, 0, nullptr, &filled);
                if (code != CL_SUCCESS) throw cl::Error(code, "clEnqueueFillBuffer");
                *event = cl::Event(filled);
            });
@@ -154,12 +199,12 @@ CommandRecord Session::finished(const Pending& pending) const {
 }
 
 void Session::flush() {
-    guarded("handing commands to the device", [this] { queue_.flush(); });
+    guarded("handing commands to the device", [this] { queue_->flush(); });
 }
 
 void Session::finish() {
     const std::vector<Pending> done = std::exchange(pending_, {});  // also gone if one of them has failed
-    guarded("waiting for the device", [this] { queue_.finish(); });
+    guarded("waiting for the device", [this] { queue_->finish(); });
     for (const Pending& command : done) profile_.add(finished(command));
 }
 

@@ -1,6 +1,7 @@
 // A session on one device: every buffer, program and command is made here; every command has a label and is profiled.
 #pragma once
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -12,12 +13,16 @@
 #include "host/cl/opencl.hpp"
 #include "host/cl/profile.hpp"
 #include "host/cl/program.hpp"
+#include "host/cl/staging.hpp"
 #include "host/cl/step_log.hpp"
 
 namespace raya {
 
 /// Whether the device is asked to measure its commands (a device that cannot is not asked).
 enum class Timing { kOn, kOff };
+
+/// Whether transfers go through pinned memory (host/cl/staging.hpp); of the device: where its memory is its own.
+enum class Transfers { kOfDevice, kDirect, kStaged };
 
 /// A context and an in-order queue: commands run one after another, in the order in which they were given.
 ///
@@ -26,7 +31,7 @@ enum class Timing { kOn, kOff };
 /// call, label, buffers or kernel, error name and remedy. A transfer of no elements does nothing and leaves no record.
 class Session {
   public:
-    explicit Session(const cl::Device& device, Timing timing = Timing::kOn);
+    explicit Session(const cl::Device& device, Timing timing = Timing::kOn, Transfers transfers = Transfers::kOfDevice);
     Session(Session&&) = default;  // not copied: a copy would report the same commands twice
 
     const DeviceInfo& device() const { return info_; }
@@ -60,7 +65,8 @@ class Session {
                       kernel.handle(), local_bytes);
     }
 
-    /// Host to device: `from` into `to` from element `offset` on. Waits, so `from` may change afterwards.
+    /// Host to device: `from` into `to` from element `offset` on. `from` may change afterwards: either this waits, or
+    /// its bytes are on their way from pinned memory.
     template <class T>
     void write(const std::string& label, Buffer<T>& to, std::span<const std::type_identity_t<T>> from,
                std::size_t offset = 0) {
@@ -154,6 +160,10 @@ class Session {
                      std::size_t bytes, const void* from);
     void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                     std::size_t bytes, void* to);
+    void write_staged(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
+                      std::size_t bytes, const std::byte* from);
+    void read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+                     std::size_t bytes, std::byte* to);
     void copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes);
     /// `rows` of so many bytes; pitches in bytes too.
     void copy_rows(const std::string& label, const Place& from, std::size_t from_pitch, const Place& to,
@@ -170,7 +180,8 @@ class Session {
     DeviceInfo info_;
     mutable std::uint64_t bytes_taken_ = 0;
     cl::Context context_;
-    cl::CommandQueue queue_;
+    std::unique_ptr<cl::CommandQueue> queue_;  // at an address that stays, when a session moves
+    std::unique_ptr<Staging> staging_;         // where transfers are staged
     std::vector<Pending> pending_;
     Profile profile_;
     StepLog* steps_ = nullptr;

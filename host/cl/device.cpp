@@ -26,6 +26,13 @@ std::string lower_case(std::string text) {
     return text;
 }
 
+/// Mesa's llvmpipe ends a work-item's loops after so many turns of all of them (tests/portability/nested_loops.cl). No
+/// query tells; what else does so is found by kernels' canaries (kernels/shared/loop_canary.clh).
+std::uint32_t loop_turns_of(const std::string& device_name) {
+    constexpr std::uint32_t kLlvmpipe = 65535;
+    return device_name.find("llvmpipe") != std::string::npos ? kLlvmpipe : 0;
+}
+
 std::string full_name(const DeviceInfo& device) { return device.platform + " " + device.name; }
 
 bool is_usable(const DeviceInfo& device) { return device.available && device.compiler_available; }
@@ -134,8 +141,10 @@ DeviceInfo device_info(const cl::Device& device) {
         info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
         info.local_memory_is_dedicated = device.getInfo<CL_DEVICE_LOCAL_MEM_TYPE>() == CL_LOCAL;
         info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+        info.own_memory = info.type != "cpu" && device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_FALSE;
         info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
         info.max_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+        info.loop_turns = loop_turns_of(info.name);
         info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
         info.preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>();
         info.correctly_rounded_divide_sqrt = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;

@@ -14,8 +14,10 @@ struct DeviceInfo {
     std::uint64_t local_memory_bytes = 0;    // of one work-group
     bool local_memory_is_dedicated = false;  // false: it lies in global memory, as on CPUs
     std::uint64_t global_memory_bytes = 0;
+    bool own_memory = false;                 // global memory is not the host's
     std::uint64_t max_allocation_bytes = 0;  // of one buffer
     std::size_t max_group_size = 0;          // work-items
+    std::uint32_t loop_turns = 0;  // of all loops of a work-item, after which they end in silence; 0: no limit
     std::uint32_t native_float_width = 0, preferred_float_width = 0;
     bool correctly_rounded_divide_sqrt = false;  // the build option for it is accepted
     bool fused_multiply_add = false;             // CL_FP_FMA; whether it is fast only the kernel can see (FP_FAST_FMAF)

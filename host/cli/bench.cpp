@@ -6,15 +6,18 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "host/cli/bench_ranks.hpp"
 #include "host/cli/bench_rows.hpp"
+#include "host/cli/bench_tune.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/scene_input.hpp"
+#include "host/cli/tuned_option.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
@@ -37,6 +40,7 @@ struct BenchCommand {
     std::string report, baseline;
     double tolerance = 10;  // percent
     bool denormals = false;
+    TuneCommand tune;
 };
 
 // The first row of the same lanes: what the slow-down of a format is measured against.
@@ -89,6 +93,14 @@ std::vector<NumberFormat> parse_formats(const std::string& list) {
     std::istringstream words(list);
     for (std::string word; std::getline(words, word, ',');) formats.push_back(parse_format(word));
     return formats;
+}
+
+// What rows that leave lanes and group open have taken, where it was tuned.
+void print_tuned(const std::vector<BenchRow>& rows) {
+    std::set<std::string> files;
+    for (const BenchRow& row : rows)
+        if (row.tuned != "defaults" && row.tuned != "options") files.insert(row.tuned);
+    for (const std::string& file : files) fmt::print("tuned: {}\n", file);
 }
 
 // Refuses what could not be compared or written in the end. Returns the baseline, empty where there is none to be.
@@ -202,6 +214,8 @@ Scene scene_of(const BenchCommand& command) {
 }
 
 void bench(const CLI::App& parsed, BenchCommand command) {
+    check_tune_options(parsed, command.tune);
+    if (command.tune.wanted) return bench_tune(command.render, command.ways, command.report, command.tune);
     refuse_ignored(parsed, command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
@@ -213,6 +227,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();
     const Scene scene = scene_of(command);
+    const TunedUse tuned = use_tuned(command.render.no_tuned);
     const RingSettings settings = ring_settings(command.render, scene);
     if (settings.antialias.method != AntialiasMethod::kNone)
         throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
@@ -227,6 +242,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
                scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
                settings.bounces, rows.front().said.rays, command.samples);
     print_rows(rows);
+    print_tuned(rows);
     if (command.denormals) print_denormals(rows);
     if (command.ways.empty())
         print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
@@ -274,6 +290,7 @@ void add_bench_command(CLI::App& program) {
               "and its median have both lost more")
         ->type_name("PERCENT")
         ->capture_default_str();
+    add_tune_options(*command, options->tune);
     command->get_option("--format")
         ->description(
             "Formats to compare, with commas between them: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");

@@ -51,6 +51,7 @@ BenchRow row_of(BenchMeasurement said, const NumberFormat& format, std::shared_p
             .said = std::move(said),
             .events = events(first),
             .build_s = first.build_s,
+            .tuned = first.tuned,
             .image_s = [renderer, seconds] { return seconds(renderer->render()); }};
 }
 

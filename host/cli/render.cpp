@@ -27,7 +27,7 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
     add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
         ->required()
         ->type_name("SCENE.nff");
-    add_value(*command, "-o,--output", options->image, "Image to write: .png (sRGB), .exr or .pfm (linear)")
+    add_value(*command, "-o,--output", options->image, "Image to write: .png or .ppm (sRGB), .exr or .pfm (linear)")
         ->required()
         ->type_name("IMAGE");
     add_render_options(*command, options->render);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "host/cl/device.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/whole_file.hpp"
@@ -50,6 +51,8 @@ void check_targets(const RenderCommand& command) {
     if (!command.torus.replay.empty()) check_replay(command.torus);
     check_distinct(command.render.scene,
                    {command.image, command.cost, command.mask, command.report, packets, command.trace.file});
+    // Drivers first: the first TBB that is loaded serves all, and Intel's runtime wants a newer one than OpenImageIO's.
+    all_devices();
     check_writable_target(command.image, kImageExtensions);
     if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
     if (!command.mask.empty()) check_writable_target(command.mask, kImageExtensions);

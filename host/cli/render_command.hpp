@@ -19,6 +19,9 @@ struct RenderCommand {
     std::string image, cost, mask, report;
     TraceOptions trace;
     bool profile = false, quiet = false;
+
+    /// Commands are timed where somebody will read the times: a GPU's queue is faster without.
+    Timing timing() const { return profile || !report.empty() || !trace.file.empty() ? Timing::kOn : Timing::kOff; }
 };
 
 /// Renders on a ring machine, on the torus machine, and writes what was asked for: in rank 0, where there are several.
@@ -40,8 +43,8 @@ RenderReport begin_report(const RenderCommand& command, const SceneInput& input,
     report.scene = command.render.scene;
     report.skipped = input.remarks;
     report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
-    report.device = {device.name,          device.platform, device.version,
-                     result.build_options, result.lanes,    result.group_size};
+    report.device = {device.name,  device.platform,   device.version, result.build_options,
+                     result.lanes, result.group_size, result.tuned};
     report.measured = {result.build_s, result.render_s, result.commands, {}, {}};
     return report;
 }

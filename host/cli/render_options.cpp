@@ -7,6 +7,7 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"
 #include "host/cli/scene_input.hpp"
+#include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 
@@ -81,11 +82,15 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("BYTES");
     add_device_option(command, o.device);
     add_value(command, "--lanes", o.lanes,
-              "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: the device's float vectors")
+              "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: as the device was tuned (raya bench "
+              "--tune), else its float vectors")
         ->type_name("V");
-    add_value(command, "--group", o.group,
-              "Work-items L in the work-group that stands for a PE, 1..64; default: 1 on a CPU, 32 elsewhere")
+    add_value(
+        command, "--group", o.group,
+        "Work-items L in the work-group that stands for a PE, 1..1024; default: as the device was tuned, else 1 on "
+        "a CPU, 128 elsewhere")
         ->type_name("L");
+    add_tuned_option(command, o.no_tuned);
     add_value(command, "--kernel-dir", o.kernel_dir, "Read the kernels from this folder, while developing them")
         ->type_name("DIR");
 }

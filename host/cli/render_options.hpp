@@ -18,7 +18,7 @@ namespace raya {
 struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
                        points, exchange, kernel_dir, accel;
-    bool strict = false;
+    bool strict = false, no_tuned = false;
     std::optional<double> threshold;
     std::optional<std::uint64_t> pe_memory;  // bytes
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;

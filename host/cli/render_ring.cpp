@@ -3,6 +3,7 @@
 
 #include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
+#include "host/cli/tuned_option.hpp"
 #include "host/files/progress.hpp"
 #include "host/machine/budget.hpp"
 #include "host/ring/mapping.hpp"
@@ -91,10 +92,11 @@ void render_on_ring(const RenderCommand& command, Ranks& ranks) {
     RingSettings settings = ring_settings(options, scene);
     settings.keep_costs = !command.cost.empty();
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
+    const TunedUse tuned = use_tuned(options.no_tuned, &input.warnings);
     bar->stage("preparing");
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
-    Session session = watch.steps().during("open device", [&] { return Session(device); });
+    Session session = watch.steps().during("open device", [&] { return Session(device, command.timing()); });
     watch.observe(session, ranks);
     RingRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);

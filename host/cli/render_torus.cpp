@@ -5,6 +5,7 @@
 
 #include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
+#include "host/cli/tuned_option.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/torus/async_machine.hpp"
@@ -71,6 +72,7 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     t.voxels = settings.voxels;
     t.links = links_name(settings.links);
     t.inject = settings.inject == Injection::kRoot ? "root" : "all";
+    t.link_exchange = result.links_by_kernel ? "kernel" : "copies";
     t.packets = settings.packets;
     t.returns = result.returns;
     t.discarded = result.events[RAYA_DISCARDED];
@@ -143,10 +145,11 @@ void render_on_torus(const RenderCommand& command, Ranks& ranks) {
     const Scene& scene = input.scene;
     const TorusSettings settings = torus_settings(options, command.torus, scene);
     refuse_history_of_ranks(settings, ranks);
+    const TunedUse tuned = use_tuned(options.no_tuned, &input.warnings);
     bar->stage("preparing");
     const cl::Device device =
         watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
-    Session session = watch.steps().during("open device", [&] { return Session(device); });
+    Session session = watch.steps().during("open device", [&] { return Session(device, command.timing()); });
     watch.observe(session, ranks);
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);

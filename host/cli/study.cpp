@@ -11,6 +11,7 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/studies.hpp"
+#include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/progress.hpp"
@@ -29,7 +30,7 @@ struct FormatsCommand {
     std::vector<std::string> scenes, formats;
     std::optional<std::uint32_t> lanes;
     std::uint32_t samples = 5;
-    bool strict = false;
+    bool strict = false, no_tuned = false;
 };
 
 // Each format once, in the order given; fp32 is always there.
@@ -76,6 +77,7 @@ void study_formats(const FormatsCommand& command) {
     const FormatsSettings settings = formats_settings(command);
     const std::vector<LabelledScene> scenes = scenes_of(command);
     const fs::path folder = command.folder;
+    const TunedUse tuned = use_tuned(command.no_tuned);
     Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
     const StudyFolder made(folder, {"formats.csv", "formats.json", "formats.md"});
     const FormatsStudy study = run_with_progress(session, scenes, settings);
@@ -119,6 +121,7 @@ void add_formats_study(CLI::App& study) {
         ->capture_default_str();
     add_strict_option(*command, options->strict);
     add_timing_options(*command, *options);
+    add_tuned_option(*command, options->no_tuned);
     command->callback([options] { study_formats(*options); });
 }
 

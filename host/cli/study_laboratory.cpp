@@ -14,6 +14,7 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/studies.hpp"
+#include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/say.hpp"
@@ -33,7 +34,7 @@ struct LaboratoryCommand {
     std::optional<std::uint32_t> size;
     std::vector<std::string> scenes;
     std::vector<double> network;  // alpha in microseconds, beta in nanoseconds a byte
-    bool strict = false;
+    bool strict = false, no_tuned = false;
 };
 
 std::uint32_t side_of(const LaboratoryCommand& command) {
@@ -102,6 +103,7 @@ RunRecord record_of(const Study& study, const LaboratoryCommand& command, const 
     if (!command.network.empty()) line += fmt::format(" --network {}", fmt::join(command.network, ","));
     if (command.strict) line += " --strict";
     if (!command.device.empty()) line += " --device " + quoted(command.device);
+    if (command.no_tuned) line += " --no-tuned";
     return {RAYA_VERSION, line + " -o DIR", device.name, device.platform, device.driver};
 }
 
@@ -141,6 +143,7 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> asked)
     files.emplace_back("index.html");
     if (wanted.size() > 1) files.emplace_back("index.md");
     ProgressBar bar(true, "preparing");
+    const TunedUse tuned = use_tuned(command.no_tuned);
     Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
     const StudyFolder made(command.folder, files);
     Laboratory laboratory(session, side, network);
@@ -184,6 +187,7 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
             ->type_name("ALPHA,BETA");
     add_strict_option(*command, options->strict);
     add_device_option(*command, options->device);
+    add_tuned_option(*command, options->no_tuned);
     command->callback([options, wanted] { run_studies(*options, wanted); });
 }
 

@@ -52,6 +52,11 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "Packets that wait in a node at most; a queue that is too short is refused with the length that would do; "
         "default: what the memory leaves, at most 8192",
         "N");
+    add("--link-exchange", t.link_exchange,
+        "How packets come over the links of a device, the same ones either way: as copies between its buffers or by a "
+        "kernel; auto: copies on a CPU, elsewhere what is sooner, measured when the render begins",
+        "auto|copies|kernel")
+        ->default_str("auto");
     add("--packets", t.packets,
         "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; "
         "see docs/packets.md",
@@ -95,13 +100,14 @@ constexpr std::array<Foreign, 11> kOfRings = {
 
 constexpr const char* kNoNodes =
     "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
-constexpr std::array<Foreign, 10> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
+constexpr std::array<Foreign, 11> kOfTorus = {{{"--nodes", "its PEs stand on a ring; say how many with --pes P"},
                                                {"--voxels", kNoNodes},
                                                {"--links", kNoNodes},
                                                {"--inject", kNoNodes},
                                                {"--returns", kNoNodes},
                                                {"--packet-words", kNoNodes},
                                                {"--queue", kNoNodes},
+                                               {"--link-exchange", kNoNodes},
                                                {"--packets", kNoNodes},
                                                {"--replay", kNoNodes},
                                                {"--async", kNoNodes}}};
@@ -133,6 +139,13 @@ bool is_return_a_ray(const std::string& text) {
     if (text.empty() || text == "terms") return false;
     if (text == "rays") return true;
     throw UserError(fmt::format("--returns {}: must be terms or rays", text));
+}
+
+LinkMove parse_link_move(const std::string& text) {
+    if (text.empty() || text == "auto") return LinkMove::kMeasured;
+    if (text == "copies") return LinkMove::kCopies;
+    if (text == "kernel") return LinkMove::kKernel;
+    throw UserError(fmt::format("--link-exchange {}: must be auto, copies or kernel", text));
 }
 
 PacketCharge parse_charge(const TorusOptions& t) {
@@ -173,6 +186,7 @@ TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, cons
     settings.voxels = voxels_of(t, nodes);
     settings.inject = parse_injection(t.inject);
     settings.packets = parse_charge(t);
+    settings.link_move = parse_link_move(t.link_exchange);
     if (t.queue == 0u) throw UserError("--queue 0: must be 1 packet or more");
     settings.queue = t.queue.value_or(0);
     settings.memory_bytes = pe_memory_of(o, settings.machine);

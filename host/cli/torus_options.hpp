@@ -11,7 +11,7 @@ namespace raya {
 
 /// As given on the command line; what is empty has its default.
 struct TorusOptions {
-    std::string nodes, voxels, links, inject, returns, packets, replay;
+    std::string nodes, voxels, links, inject, returns, packets, replay, link_exchange;
     std::optional<std::uint32_t> packet_words;
     std::optional<std::uint32_t> queue;  // packets
     bool async = false;

@@ -23,13 +23,15 @@ namespace {
 struct VerifyCommand {
     std::string device, report, kernel_dir, only;
     std::uint32_t lanes = 0;
-    bool quick = false, full = false;
+    bool brief = false, quick = false, full = false;
     int lines = -1;  // a pipe, in the process that runs the checks (verify/worker.hpp)
     std::size_t worker_device = 0, worker_done = 0;
 
+    Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
+
     /// Those of the process that runs the checks.
     std::vector<std::string> arguments() const {
-        std::vector<std::string> all = {"verify", full ? "--full" : "--quick"};
+        std::vector<std::string> all = {"verify", fmt::format("--{}", depth_name(depth()))};
         const auto add = [&](const char* option, const std::string& value) {
             if (!value.empty()) all.insert(all.end(), {option, value});
         };
@@ -72,7 +74,7 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
     return result;
 }
 
-Json report_of(const std::vector<DeviceChecks>& all, bool full) {
+Json report_of(const std::vector<DeviceChecks>& all, Depth depth) {
     Json devices = Json::list();
     for (const DeviceChecks& one : all) {
         Json checks = Json::list();
@@ -88,7 +90,7 @@ Json report_of(const std::vector<DeviceChecks>& all, bool full) {
                            {"seconds", one.seconds},
                            {"checks", checks}});
     }
-    return {{"program", "raya " RAYA_VERSION}, {"depth", full ? "full" : "quick"}, {"devices", devices}};
+    return {{"program", "raya " RAYA_VERSION}, {"depth", depth_name(depth)}, {"devices", devices}};
 }
 
 void print_overall(const std::vector<DeviceChecks>& all) {
@@ -102,9 +104,9 @@ void print_overall(const std::vector<DeviceChecks>& all) {
 }
 
 void run_verify(const VerifyCommand& command) {
-    if (command.quick && command.full) throw UserError("--quick and --full: leave one of them out");
+    if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.report.empty()) check_writable(command.report);
-    const VerifySettings settings{.depth = command.full ? Depth::kFull : Depth::kQuick,
+    const VerifySettings settings{.depth = command.depth(),
                                   .sources = {command.kernel_dir},
                                   .only = command.only,
                                   .lanes = command.lanes,
@@ -117,7 +119,7 @@ void run_verify(const VerifyCommand& command) {
         right = right && all.back().is_right();
     }
     if (all.size() > 1) print_overall(all);
-    if (!command.report.empty()) write_whole_file(command.report, report_of(all, command.full).dump(2) + "\n");
+    if (!command.report.empty()) write_whole_file(command.report, report_of(all, command.depth()).dump(2) + "\n");
     if (!right) throw CheckFailure{};
 }
 
@@ -133,6 +135,9 @@ void add_verify_command(CLI::App& program) {
                       "; all: every usable device, one after another");
     command->add_flag("--quick", options->quick,
                       "The device's own lanes, the usual formats, a dozen images: the default");
+    command->add_flag("--brief", options->brief,
+                      "What few kernels show, with few rays: for compilers that take a minute for a kernel, and for "
+                      "simulators");
     command->add_flag(
         "--full", options->full,
         "Every format, width of lanes and group size: about five minutes with PoCL on an idle CPU, longer where "

@@ -11,7 +11,7 @@ struct ModuleError : std::runtime_error {
 };
 
 /// The function `symbol` of the module `name` (a file NAME.so), which stays loaded. It is looked for beside the
-/// program, in ../lib/raya/ from there, and where the build left it. Throws ModuleError.
+/// program, in ../lib/raya/ and .. from there. Throws ModuleError.
 void* module_function(const std::string& name, const char* symbol);
 
 }  // namespace raya

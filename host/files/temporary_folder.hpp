@@ -12,7 +12,8 @@ class TemporaryFolder {
   public:
     /// Its name starts with `name`. std::system_error where none can be made.
     explicit TemporaryFolder(const std::string& name) {
-        std::string made = (std::filesystem::temp_directory_path() / (name + "-XXXXXX")).string();
+        const std::string open_end(6, 'X');  // which mkdtemp fills in
+        std::string made = (std::filesystem::temp_directory_path() / (name + "-" + open_end)).string();
         if (::mkdtemp(made.data()) == nullptr)
             throw std::system_error(errno, std::generic_category(), "no folder for temporary files, " + made);
         path_ = made;

@@ -11,7 +11,7 @@ inline constexpr const char* kEncoderModule = "raya_pictures";
 inline constexpr const char* kEncoderFunction = "raya_encode_picture";
 
 /// What a file says about its picture, as pairs of key and text. They become PNG texts and OpenEXR header entries
-/// under the names `raya:key`, which no standard attribute has; PFM has no place for them.
+/// under the names `raya:key`, which no standard attribute has; PFM and PPM have no place for them.
 using ImageAttributes = std::vector<std::pair<std::string, std::string>>;
 
 /// A picture as its format stores it: height x width x channels values, row 0 on top.

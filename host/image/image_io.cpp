@@ -12,6 +12,7 @@
 #include "host/files/module.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/image/pfm.hpp"
+#include "host/image/ppm.hpp"
 #include "host/image/srgb.hpp"
 
 namespace raya {
@@ -74,13 +75,21 @@ std::string encode_png(const fs::path& path, const Pixels& pixels, const ImageAt
     return encode(path, "png", pixels, codes.data(), attributes);
 }
 
+/// True of the formats that this program writes without a library.
+bool is_plain(const std::string& extension) { return extension == ".pfm" || extension == ".ppm"; }
+
+template <class Pieces>
+void write_pieces(const fs::path& path, Pieces pieces) {
+    write_whole_file(path, [&] { return pieces.next(); });
+}
+
 void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttributes& attributes) {
     const std::string extension = lower_case_extension(path);
     if (extension == ".png") return write_whole_file(path, encode_png(path, pixels, attributes));
     if (extension == ".exr")
         return write_whole_file(path, encode(path, "exr", pixels, pixels.values.data(), attributes));
-    PfmPieces pieces(pixels.width, pixels.height, pixels.channels, pixels.values);
-    write_whole_file(path, [&] { return pieces.next(); });
+    if (extension == ".ppm") return write_pieces(path, PpmPieces(pixels.width, pixels.height, pixels.values));
+    write_pieces(path, PfmPieces(pixels.width, pixels.height, pixels.channels, pixels.values));
 }
 
 }  // namespace
@@ -88,7 +97,7 @@ void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttribu
 void check_writable_target(const fs::path& path, std::span<const std::string_view> extensions) {
     check_extension(path, extensions);
     check_writable(path);
-    if (lower_case_extension(path) != ".pfm") encoder(path);
+    if (!is_plain(lower_case_extension(path))) encoder(path);
 }
 
 void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes) {

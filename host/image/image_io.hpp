@@ -1,4 +1,5 @@
-// Picture files: PNG (8-bit sRGB), OpenEXR and PFM (linear floats), the same bytes for the same picture every time.
+// Picture files: PNG and PPM (8-bit sRGB), OpenEXR and PFM (linear floats), the same bytes for the same picture every
+// time. PPM and PFM need no library.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -10,8 +11,8 @@
 
 namespace raya {
 
-inline constexpr std::array<std::string_view, 3> kImageExtensions{".png", ".exr", ".pfm"};
-inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // floats only: no PNG
+inline constexpr std::array<std::string_view, 4> kImageExtensions{".png", ".exr", ".pfm", ".ppm"};
+inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // floats only
 
 /// Refuses a target whose extension (in either case) is not among `extensions`, whose format cannot be encoded here, or
 /// that write_whole_file() could not write, so that a command can do so before it renders. Throws UserError with file,
@@ -19,8 +20,9 @@ inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".
 void check_writable_target(const std::filesystem::path& path, std::span<const std::string_view> extensions);
 
 /// Writes the picture in the format that the extension names, whole or not at all, without date, host or program
-/// version. A PNG holds the nearest 8-bit sRGB code of each value (clamped to 0..1), EXR (channels R, G, B, zip) and
-/// PFM the floats themselves. Throws UserError with file, reason and remedy, std::logic_error if `image` lacks pixels.
+/// version. PNG and PPM hold the nearest 8-bit sRGB code of each value (clamped to 0..1), EXR (channels R, G, B, zip)
+/// and PFM the floats themselves. Throws UserError with file, reason and remedy, std::logic_error if `image` lacks
+/// pixels.
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
 
 /// The bytes of that PNG file. Throws UserError where there is no encoder, std::logic_error as above.

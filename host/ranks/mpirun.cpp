@@ -25,8 +25,7 @@ ProgramRun run_of(const std::vector<std::string>& command) {
     }
 }
 
-// No rank of an mpirun that has not been asked to stay quiet about it is bound to a processor that PoCL's threads
-// leave.
+// Ranks are bound to no processor, unless words of the user's own say so: PoCL's threads take what is free.
 std::vector<std::string> words_of(const char* text) {
     std::istringstream words(text != nullptr ? text : "mpirun --bind-to none");
     std::vector<std::string> all;

@@ -155,9 +155,13 @@ Json to_json(const RenderReport& r) {
     json["image"] = {
         {"width", r.image.width}, {"height", r.image.height}, {"file", r.image.file}, {"hash", r.image.hash}};
     json["machine"] = machine_json(r);
-    json["device"] = {
-        {"name", r.device.name},   {"platform", r.device.platform},     {"version", r.device.version},
-        {"lanes", r.device.lanes}, {"group_size", r.device.group_size}, {"build_options", r.device.build_options}};
+    json["device"] = {{"name", r.device.name},
+                      {"platform", r.device.platform},
+                      {"version", r.device.version},
+                      {"lanes", r.device.lanes},
+                      {"group_size", r.device.group_size},
+                      {"tuned", r.device.tuned},
+                      {"build_options", r.device.build_options}};
     json["rays"] = {{"primary", e[RAYA_PRIMARY]},     {"primary_hits", e[RAYA_PRIMARY_HITS]},
                     {"reflected", e[RAYA_REFLECTED]}, {"refracted", e[RAYA_REFRACTED]},
                     {"shadow", e[RAYA_SHADOW]},       {"shadow_hits", e[RAYA_SHADOW_HITS]}};
@@ -275,6 +279,8 @@ std::string human_summary(const RenderReport& r) {
     text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({} lanes)\n", r.measured.build_s,
                         r.measured.render_s, rate_text(static_cast<double>(rays) / r.measured.render_s), r.device.name,
                         r.device.lanes);
+    const bool by_file = r.device.tuned != "defaults" && r.device.tuned != "options";
+    if (by_file && !r.device.tuned.empty()) text += fmt::format("tuned   {}\n", r.device.tuned);
     text += ranks_line(r);
     text += fmt::format("image   {} ({})\n", r.image.file, r.image.hash);
     return text;

@@ -62,6 +62,7 @@ struct RenderReport {
     struct {
         std::string name, platform, version, build_options;
         std::uint32_t lanes = 0, group_size = 0;
+        std::string tuned;  // where lanes, group and what goes with them come from: "defaults", "options", "FILE, DATE"
     } device;
 
     EventCounts events{};

@@ -35,6 +35,7 @@ Json torus_json(const TorusReport& t) {
             {"voxels", t.voxels},
             {"links", t.links},
             {"inject", t.inject},
+            {"link_exchange", t.link_exchange},
             {"discarded", t.discarded},
             {"returns", {{"of", returns_name(t.packets)}, {"messages", t.returns}}},
             {"message_words", {{"ray", t.packets.ray_words}, {"return", t.packets.return_words()}}},

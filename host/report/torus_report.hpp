@@ -16,6 +16,7 @@ struct TorusReport {
     std::array<std::uint32_t, 3> nodes{}, voxels{};  // along x, y and z
     std::string links;                               // "torus3d" or "torus2d"
     std::string inject;                              // "root" or "all": who makes the primary rays
+    std::string link_exchange;                       // "copies" or "kernel": how packets came over the device's links
     PacketCharge packets;                            // what the model charges
     std::uint64_t returns = 0;                       // that are messages
     std::uint64_t discarded = 0;                     // primary rays that nodes made and threw away

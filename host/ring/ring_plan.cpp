@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/kernels/tuned.hpp"
 #include "kernels/shared/bvh.h"
 
 namespace raya {
@@ -11,9 +12,24 @@ namespace {
 // they are many and few of them are read, they stay where they are.
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMostCopied = 64 * 1024;
-    const std::size_t bytes = 4 * job.words().size() + sizeof(std::uint32_t);
+    constexpr std::size_t kFewTurns = 4096;
+    if (device.loop_turns > 0 && job.words().size() > kFewTurns) return false;
+    const std::size_t bytes = 4 * job.words().size() + 32;  // whole rows, and what work-items share
     return bytes <=
            (accel != AccelKind::kNone ? std::min(kMostCopied, device.local_memory_bytes) : device.local_memory_bytes);
+}
+
+constexpr std::size_t kTestsOfWalk = 20;  // of a ray through voxels or down a tree, about
+
+// What a launch may do at most, in tests and steps of a lane's rays, where a tree's next step takes as many as `step`.
+// On llvmpipe 12 turns of loops for a test were too few for the images of `raya verify`, 16 enough; a step down a tree
+// turns once for each of sixteen boxes, and then some. What a launch does once is a loop over the words that are
+// copied.
+double most_work(AccelKind accel, double step, const DeviceInfo& device) {
+    constexpr double kTurnsOfTest = 24, kTurnsOfStep = 96, kTurnsOfLaunch = 8192;
+    if (device.loop_turns == 0) return 1u << 31;
+    const double turns = accel == AccelKind::kNone ? kTurnsOfTest : kTurnsOfStep;
+    return std::max(1.0, (device.loop_turns - kTurnsOfLaunch) / turns - step);
 }
 
 }  // namespace
@@ -29,22 +45,27 @@ JobSettings job_settings(const RingSettings& settings, const LengthScale& scale)
 
 RingSettings checked(RingSettings settings, const DeviceInfo& device) {
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
-    if (!settings.kernels.lanes) settings.kernels.lanes = default_lanes(device);
-    if (!settings.kernels.group_size) settings.kernels.group_size = default_group_size(device);
+    settings.kernels =
+        chosen(settings.kernels, device,
+               {.accel = static_cast<std::uint32_t>(settings.accel.kind), .fp32 = settings.format.is_fp32()});
     check_kernel_options(
         {.lanes = settings.kernels.lanes, .group_size = settings.kernels.group_size, .bounces = settings.bounces},
         device);
     return settings;
 }
 
-LaunchSlices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share) {
-    if (const std::uint32_t pixels = settings.pixels_per_launch) return {pixels, pixels, pixels};
-    constexpr double kTestsPerLaunch = 1e9;  // about a second of two CPU cores
+LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
+                       std::size_t lights, std::uint32_t pes, const DeviceInfo& device) {
+    if (const std::uint32_t work = settings.work_per_launch) return {work, work, work};
+    constexpr double kTestsPerLaunch = 2e8;  // about a quarter of a second of two CPU cores
     constexpr double kRaysPerPixel = 6;      // of the project's scenes
-    const double tests_of_one = kRaysPerPixel * static_cast<double>(objects) * settings.mapping.pes;
-    const auto affordable = static_cast<std::uint32_t>(std::min(kTestsPerLaunch / tests_of_one, double(share)));
-    const std::uint32_t least = std::min(8 * lanes, share);  // below, lanes are idle too often at the end of a launch
-    return {std::min(lanes, share), least, std::clamp(affordable, least, share)};
+    const double tests_of_ray = static_cast<double>(
+        settings.accel.kind != AccelKind::kNone ? std::min(kTestsOfWalk, objects) : std::max<std::size_t>(1, objects));
+    const double most = most_work(settings.accel.kind, tests_of_ray * static_cast<double>(1 + lights), device);
+    const double first = kTestsPerLaunch / (1.0 * pes * options.group_size * options.lanes);
+    const auto bounded = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, most)); };
+    return {bounded(std::max(first, kRaysPerPixel * tests_of_ray)), bounded(kRaysPerPixel * tests_of_ray),
+            bounded(most)};
 }
 
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
@@ -62,7 +83,8 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
                       filters_hold(settings.format, job.header().extent),
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
-            .cones = job.has_cones()};
+            .cones = job.has_cones(),
+            .more = settings.kernels.more};
 }
 
 }  // namespace raya

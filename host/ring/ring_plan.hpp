@@ -15,10 +15,11 @@ JobSettings job_settings(const RingSettings& settings, const LengthScale& scale)
 /// be built with them.
 RingSettings checked(RingSettings settings, const DeviceInfo& device);
 
-/// Pixels of each share to trace in one launch. A launch should last no longer than about a second, so that a progress
-/// bar moves, Ctrl-C is heard and a GPU's watchdog sleeps; and it should give each lane several pixels, so that few
-/// wait for the last.
-LaunchSlices slices(const RingSettings& settings, std::size_t objects, std::uint32_t lanes, std::uint32_t share);
+/// How much one launch should do: no more than takes about a second, so that a progress bar moves, Ctrl-C is heard and
+/// a GPU's watchdog sleeps, and no more than the device lets loops do. `objects`: of the scene; `lights`: of it; `pes`:
+/// on this device.
+LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
+                       std::size_t lights, std::uint32_t pes, const DeviceInfo& device);
 
 /// `accel`: what was made of settings.accel.
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,

@@ -63,9 +63,7 @@ void RingRenderer::build() {
     Kernels kernels(session_, options, settings_.kernels.sources);
     tracer_ = std::make_unique<Tracer>(
         kernels, pes_, window_,
-        slices(settings_,
-               settings_.accel.kind != AccelKind::kNone ? std::min<std::size_t>(20, job_.objects) : job_.objects,
-               options.lanes * options.group_size, window_));
+        launch_work(settings_, options, job_.objects, job_.job.header().lights, pes_.count, session_.device()));
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.job.words());
     tracer_->clear(counters_.front());
@@ -187,6 +185,7 @@ void RingRenderer::describe(RingResult& result) {
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
     result.build_options = tracer_->build_options();
+    result.tuned = settings_.kernels.origin;
     result.accel_s = job_.accel_s;
     result.build_s = build_s_;
     result.commands = session_.profile().summary();

@@ -48,6 +48,7 @@ struct RingResult {
     RankTraffic traffic;                // of this rank, while it rendered
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
+    std::string tuned;  // where lanes, group and what goes with them come from (host/kernels/tuned.hpp)
     // Measured on the host: to make the grid or tree; kernel build; everything after it.
     double accel_s = 0, build_s = 0, render_s = 0;
     std::vector<LabelSummary> commands;

@@ -25,8 +25,7 @@ struct RingSettings {
     KernelChoice kernels;
     std::uint64_t device_pixels = 1 << 22;  // of all PEs that lie on the device at a time, 20 bytes each; smoothed
                                             // images lie there as a whole
-    std::uint32_t pixels_per_launch =
-        0;  // of each PE; 0: as many as take about a second, so that progress can be shown
+    std::uint32_t work_per_launch = 0;      // tests and steps of a lane's rays; 0: as much as takes about a second
 };
 
 }  // namespace raya

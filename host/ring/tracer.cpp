@@ -1,31 +1,41 @@
 #include "host/ring/tracer.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
+
+#include "host/error.hpp"
 
 namespace raya {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// After one of `slice` pixels that took `seconds`.
-std::uint32_t next_slice(const LaunchSlices& slices, std::uint32_t slice, double seconds) {
-    constexpr double kSeconds = 0.5, kMostGrowth = 4;
-    const double growth = seconds * kMostGrowth > kSeconds ? kSeconds / seconds : kMostGrowth;
-    return std::clamp(static_cast<std::uint32_t>(std::min(growth * slice, 1.0 * slices.most)), slices.least,
-                      slices.most);
+// After a launch of so much that took `seconds`.
+std::uint32_t next_work(std::uint32_t work, std::uint32_t most, double seconds, double aim) {
+    constexpr double kMostGrowth = 4;
+    const double growth = seconds * kMostGrowth > aim ? aim / seconds : kMostGrowth;
+    return static_cast<std::uint32_t>(std::clamp(growth * work, 1.0, 1.0 * most));
+}
+
+std::size_t kept_words(const KernelOptions& options, std::uint32_t pes) {
+    const std::size_t lanes = std::size_t{pes} * options.group_size * options.lanes;
+    return lanes * raya_kept_words(trees_of(options), options.bounces);
 }
 
 }  // namespace
 
-Tracer::Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, const LaunchSlices& slices)
+Tracer::Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, const LaunchWork& work)
     : session_(kernels.session()),
       options_(kernels.options()),
       pes_(pes),
       capacity_(capacity),
-      slices_(slices),
+      work_(work),
       build_options_(kernels.program(TraceKernel::kFile).options()),
-      kernel_(kernels.get<TraceKernel>()) {}
+      kernel_(kernels.get<TraceKernel>()),
+      progress_(session_.buffer<raya_trace_progress>("progress", pes.count)),
+      kept_(session_.buffer<std::uint32_t>("kept trees", kept_words(options_, pes.count))) {}
 
 PassCounters Tracer::make_counters(const std::string& pass) const {
     return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, std::size_t{pes_.count} * capacity_),
@@ -40,31 +50,60 @@ void Tracer::clear(PassCounters& counters) {
 
 void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                      PassCounters& counters) {
-    launch("warm-up", job, {}, RAYA_POINTS_OWN, marks, pixels, counters);
+    begin("warm-up", 0);
+    launch("warm-up", job, {}, RAYA_POINTS_OWN, 1, marks, pixels, counters);
 }
 
 void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                    const ProgressCallback& progress) {
-    std::uint32_t slice = progress ? slices_.first : slices_.most;
-    for (std::uint32_t begin = range.begin, end; begin < range.end; begin = end) {
-        end = begin + std::min(range.end - begin, slice);
+    const double aim = progress ? 0.5 : 1.0;  // seconds
+    std::uint32_t work = progress ? work_.watched : work_.first;
+    begin(label, range.begin);
+    for (bool done = false; !done;) {
         const Clock::time_point start = Clock::now();
-        launch(label, job, {range.block, begin, end}, points, marks, pixels, counters);
+        launch(label, job, range, points, work, marks, pixels, counters);
+        const Standing standing = look(label);
+        done = standing.done;
+        work = next_work(work, work_.most, std::chrono::duration<double>(Clock::now() - start).count(), aim);
         if (!progress) continue;
-        session_.finish();
-        progress(static_cast<double>(end - range.begin) / (range.end - range.begin));
-        slice = next_slice(slices_, slice, std::chrono::duration<double>(Clock::now() - start).count());
+        const double all = 1.0 * pes_.count * (range.end - range.begin), first = 1.0 * pes_.count * range.begin;
+        progress(done ? 1.0 : (static_cast<double>(standing.taken) - first) / all);
     }
 }
 
+// By a write: Oclgrind does not know that a filled buffer has values.
+void Tracer::begin(const std::string& label, std::uint32_t pixel) {
+    session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count, {pixel, 0, 0}));
+}
+
+Tracer::Standing Tracer::look(const std::string& label) {
+    std::vector<raya_trace_progress> pes(pes_.count);
+    session_.read(label, progress_, pes);
+    Standing standing{.done = true};
+    std::uint64_t cut = 0;
+    for (const raya_trace_progress& pe : pes) {
+        standing.done &= pe.left == 0;
+        standing.taken += pe.next;
+        cut += pe.cut;
+    }
+    if (cut > 0)
+        throw DeviceError(fmt::format(
+            "'{}': {} has ended loops of {} work-items early and said nothing, so the image would be wrong; remedy: "
+            "fewer tests of a ray (--accel bvh or grid), other --lanes or --group, or another device",
+            label, session_.device().name, cut));
+    return standing;
+}
+
 void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
-                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters) {
-    const LocalMemory<std::uint32_t> memory{1 + (options_.words_local ? job.size() : 0)};
+                    std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                    PassCounters& counters) {
     session_.launch(label, kernel_, pes_.count, options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
-                    Uint<"block">{range.block}, Uint<"capacity">{capacity_}, Uint<"begin">{range.begin},
-                    Uint<"end">{range.end}, Uint<"points">{points}, Uint<"first_pe">{pes_.first}, marks, memory, pixels,
-                    counters.cycles, counters.events);
+                    Uint<"block">{range.block}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
+                    Uint<"points">{points}, Uint<"first_pe">{pes_.first}, Uint<"work">{work}, marks,
+                    LocalMemory<raya_trace_progress>{1},
+                    LocalMemory<std::uint32_t>{options_.words_local ? (job.size() + 3) / 4 * 4 : 4}, pixels,
+                    counters.cycles, counters.events, progress_, kept_);
 }
 
 }  // namespace raya

@@ -189,18 +189,18 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
         pack_surface(words, s);
     }
     const auto here = [&] { return static_cast<std::uint32_t>(words.size()); };
-    job.lights = static_cast<std::uint32_t>(scene.lights.size());
-    job.lights_at = here();
-    for (const Light& light : scene.lights) {
-        put_length(words, light.position);
-        put(words, light_colour(scene, light));
-    }
     job.objects.spheres = static_cast<std::uint32_t>(scene.spheres.size());
     job.objects.spheres_at = here();
     for (const Sphere& s : scene.spheres) {
         put_length(words, s.centre);
         put_square(words, std::copysign(s.radius * s.radius, s.radius));
-        words.push_back(surface_at[s.surface]);
+    }
+    for (const Sphere& s : scene.spheres) words.push_back(surface_at[s.surface]);
+    job.lights = static_cast<std::uint32_t>(scene.lights.size());
+    job.lights_at = here();
+    for (const Light& light : scene.lights) {
+        put_length(words, light.position);
+        put(words, light_colour(scene, light));
     }
     job.objects.planes = static_cast<std::uint32_t>(scene.planes.size());
     job.objects.planes_at = here();

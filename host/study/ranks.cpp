@@ -8,6 +8,7 @@
 #include "host/study/measured.hpp"
 #include "host/study/other_load.hpp"
 #include "host/study/prose.hpp"
+#include "host/study/rank_networks.hpp"
 #include "host/study/rank_trials.hpp"
 #include "host/study/ranks_machines.hpp"
 #include "host/study/rows.hpp"
@@ -18,16 +19,6 @@ namespace raya {
 namespace {
 
 constexpr const char* kName = "ranks";
-constexpr const char* kHere = "this host";
-
-struct NamedNetwork {
-    std::string name, source;
-    Network network;
-
-    double alpha_us() const { return 1e6 * network.alpha_s; }
-    double beta_ns() const { return 1e9 * network.beta_s; }
-};
-using Networks = std::vector<NamedNetwork>;
 
 // One number of ranks by one network.
 struct Row {
@@ -54,16 +45,6 @@ struct Check {
     std::string remark() const { return shared() ? "ranks share cores" : ranks == 1 ? "the model rests on it" : ""; }
 };
 using Checks = std::vector<Check>;
-
-Networks networks_of(const PingReport& ping, const std::optional<Network>& given) {
-    Networks networks = {{kHere, fmt::format("fitted to the ping-pong, {}", ping.library), ping.network},
-                         {"10 GbE", "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes", {30e-6, 0.8e-9}},
-                         {"InfiniBand HDR",
-                          "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and what MPI adds",
-                          {1e-6, 0.04e-9}}};
-    if (given) networks.push_back({"given", "given with --network", *given});
-    return networks;
-}
 
 Rows rows_of(const RankedMachine& machine, const MeasuredWork& one, const Networks& networks) {
     Rows rows;

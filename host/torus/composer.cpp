@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "host/error.hpp"
+#include "host/torus/loops_cut.hpp"
 
 namespace raya {
 namespace {
@@ -21,7 +22,18 @@ void put(std::vector<float>& colours, const raya_head& packet) {
     colours.push_back(packet.weight);
 }
 
-constexpr std::size_t kGroups = 64;  // work-groups of one work-item, each with many pixels
+// Work-groups of `group` work-items, each of which has 16 pixels or more, and fewer than would turn its loops too
+// often.
+std::size_t groups_of(const Contributions& contributions, std::uint32_t group, const DeviceInfo& device) {
+    constexpr std::size_t kPixels = 16, kMostGroups = 4096;
+    const std::vector<std::uint32_t>& starts = contributions.starts;
+    const std::size_t pixels = starts.size() - 1;
+    std::size_t groups = std::min(kMostGroups, pixels / (kPixels * group) + 1);
+    if (device.loop_turns == 0) return groups;
+    std::size_t most = 0;  // contributions of a pixel
+    for (std::size_t i = 0; i < pixels; ++i) most = std::max<std::size_t>(most, starts[i + 1] - starts[i]);
+    return std::max(groups, 2 * pixels * (most + 2) / (std::size_t{group} * device.loop_turns) + 1);
+}
 
 }  // namespace
 
@@ -52,7 +64,8 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
     return sorted;
 }
 
-Composer::Composer(Kernels& kernels) : session_(kernels.session()), compose_(kernels.get<ComposeKernel>()) {
+Composer::Composer(Kernels& kernels)
+    : session_(kernels.session()), group_(kernels.options().group_size), compose_(kernels.get<ComposeKernel>()) {
     compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles at the first launch
 }
 
@@ -63,11 +76,17 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
     Buffer<std::uint32_t> starts =
         session_.buffer<std::uint32_t>("starts of contributions", contributions.starts.size());
     Buffer<float> image = session_.buffer<float>("image", 3ull * pixels);
+    Buffer<std::uint32_t> cut = session_.buffer<std::uint32_t>("loops cut", 1);
     session_.write("compose", colours, contributions.colours);
     session_.write("compose", starts, contributions.starts);
-    session_.launch("compose", compose_, kGroups, 1, colours, starts, Uint<"pixels">{pixels}, image);
+    session_.fill("compose", cut, 0);
+    session_.launch("compose", compose_, groups_of(contributions, group_, session_.device()), group_, colours, starts,
+                    Uint<"pixels">{pixels}, image, cut);
     std::vector<float> pixels_of_image(3ull * pixels);
     session_.read("compose", image, pixels_of_image);
+    std::uint32_t was_cut = 0;
+    session_.read("compose", cut, {&was_cut, 1});
+    if (was_cut) throw loops_cut("compose", session_.device().name, "fewer --bounces");
     return pixels_of_image;
 }
 

@@ -20,18 +20,19 @@ struct Contributions {
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels);
 
 using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffer<float>&, const Buffer<std::uint32_t>&,
-                                      Uint<"pixels">, Buffer<float>&>;
+                                      Uint<"pixels">, Buffer<float>&, Buffer<std::uint32_t>&>;
 
 class Composer {
   public:
-    /// Kernels for one lane and groups of one.
+    /// Kernels for one lane.
     explicit Composer(Kernels& kernels);
 
-    /// [pixels][3]: linear red, green, blue, in the format of the build.
+    /// [pixels][3]: linear red, green, blue, in the format of the build. DeviceError where the device ends loops early.
     std::vector<float> compose(const Contributions& contributions);
 
   private:
     Session& session_;
+    std::uint32_t group_;
     ComposeKernel compose_;
 };
 

@@ -28,7 +28,8 @@ LinkExchange::LinkExchange(Session& session, const NodeShare& share, std::uint32
       cargo_(cargo),
       outboxes_(session.buffer<std::uint32_t>("outboxes", outbox_at(RAYA_LINKS, 0))),
       inboxes_(session.buffer<std::uint32_t>("inboxes", inbox_at(RAYA_LINKS, 0))),
-      sent_(session.buffer<std::uint32_t>("sent boxes", std::size_t{RAYA_LINKS} * share.inboxes())) {}
+      sent_(session.buffer<std::uint32_t>("sent boxes", std::size_t{RAYA_LINKS} * share.inboxes())),
+      crossings_(find_crossings()) {}
 
 void LinkExchange::clear() {
     const std::size_t outboxes = std::size_t{RAYA_LINKS} * nodes_;
@@ -44,26 +45,62 @@ void LinkExchange::clear() {
     moved_ = 0;
 }
 
+void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group, Buffer<std::uint32_t>& status) {
+    std::vector<std::uint32_t> ends;
+    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+        for (const std::uint32_t node : share_.own()) {
+            const bool stays = torus_.sides[link / 2] > 1 && !leads_away(link, node);
+            ends.push_back(stays ? share_.slot_of(raya_link_end(torus_, node, link)) : RAYA_NO_SLOT);
+        }
+    kernel_.emplace(Launched{kernel, group, status, session_.buffer<std::uint32_t>("ends of links", ends.size())});
+    session_.write("scatter", kernel_->ends, ends);
+}
+
 void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>& words) {
     std::fill(sent_flags_.begin(), sent_flags_.end(), 0);
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         if (torus_.sides[link / 2] == 1) continue;
-        for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
-            const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
-            if (packets == 0 || waits(status, link, node)) continue;
-            if (share_.has(node)) sent_flags_[std::size_t{link} * nodes_ + share_.slot_of(node)] = 1;
-            const std::uint64_t messages = cargo_.charged_status ? status.at(node, *cargo_.charged_status) : packets;
-            packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
-            words[std::size_t{node} * RAYA_LINKS + link] += messages * cargo_.charged_words;
-            moved_ += packets;
-        }
-        const std::size_t pitch = box_words(capacity_);
-        for (const Span& span : spans(status, link))
-            session_.copy_blocks(cargo_.label + " " + link_name(link), outboxes_,
-                                 {.pitch = pitch, .first = outbox_at(link, span.first)}, inboxes_,
-                                 {.pitch = pitch, .first = inbox_at(link, span.first)}, box_words(span.packets),
-                                 span.end - span.first);
+        send(status, link, words);
+        if (!kernel_) copy_boxes(status, link);
     }
+    // The kernel itself says what it has sent: all, where no link leads away.
+    if (!kernel_ || !crossings_.empty()) write_sent();
+    if (kernel_) launch();
+}
+
+// Notes what goes over the links of one direction.
+void LinkExchange::send(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words) {
+    for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
+        const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
+        if (packets == 0 || waits(status, link, node)) continue;
+        if (share_.has(node)) sent_flags_[std::size_t{link} * nodes_ + share_.slot_of(node)] = 1;
+        const std::uint64_t messages = cargo_.charged_status ? status.at(node, *cargo_.charged_status) : packets;
+        packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
+        words[std::size_t{node} * RAYA_LINKS + link] += messages * cargo_.charged_words;
+        moved_ += packets;
+    }
+}
+
+void LinkExchange::copy_boxes(const NodeStatus& status, std::uint32_t link) {
+    const std::size_t pitch = box_words(capacity_);
+    for (const Span& span : spans(status, link))
+        session_.copy_blocks(cargo_.label + " " + link_name(link), outboxes_,
+                             {.pitch = pitch, .first = outbox_at(link, span.first)}, inboxes_,
+                             {.pitch = pitch, .first = inbox_at(link, span.first)}, box_words(span.packets),
+                             span.end - span.first);
+}
+
+void LinkExchange::launch() {
+    if (std::find(sent_flags_.begin(), sent_flags_.end(), 1u) == sent_flags_.end() && sent_flags_ == flags_there_)
+        return;
+    session_.launch(cargo_.label, kernel_->kernel, std::size_t{RAYA_LINKS} * nodes_, kernel_->group, kernel_->ends,
+                    Uint<"nodes">{nodes_}, Uint<"inboxes_of_link">{share_.inboxes()}, Uint<"capacity">{capacity_},
+                    Uint<"packet_words">{cargo_.packet_words}, Uint<"outbox_status">{cargo_.outbox_status},
+                    Uint<"inbox_status">{cargo_.inbox_status}, outboxes_, inboxes_, sent_, kernel_->status);
+    flags_there_ = sent_flags_;
+}
+
+void LinkExchange::write_sent() {
     if (sent_flags_ == flags_there_) return;
     session_.write(cargo_.label, sent_, sent_flags_);
     flags_there_ = sent_flags_;
@@ -83,21 +120,29 @@ LinkExchange::Face& LinkExchange::face(std::vector<Face>& faces, std::uint32_t r
     return faces.emplace_back(Face{rank, link, {}, {}, {}});
 }
 
+std::vector<LinkExchange::Crossing> LinkExchange::find_crossings() const {
+    std::vector<Crossing> found;
+    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+        for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
+            const std::uint32_t end = raya_link_end(torus_, node, link);
+            if (share_.has(node) != share_.has(end))
+                found.push_back({link, node, share_.rank_of(share_.has(node) ? end : node)});
+        }
+    return found;
+}
+
 // Both ends of a face see from the status how many packets there are in each of its boxes.
 void LinkExchange::leave(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in) {
     leaving_.clear();
     coming_.clear();
-    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (std::uint32_t node = 0; node < raya_nodes(torus_); ++node) {
-            const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
-            const std::uint32_t end = raya_link_end(torus_, node, link);
-            if (packets == 0 || share_.has(node) == share_.has(end) || waits(status, link, node)) continue;
-            Face& f = share_.has(node) ? face(leaving_, share_.rank_of(end), link)
-                                       : face(coming_, share_.rank_of(node), link);
-            f.nodes.push_back(node);
-            f.packets.push_back(packets);
-            f.words.resize(f.words.size() + box_words(packets));
-        }
+    for (const auto& [link, node, rank] : crossings_) {
+        const std::uint32_t packets = status.at(node, cargo_.outbox_status + link);
+        if (packets == 0 || waits(status, link, node)) continue;
+        Face& f = face(share_.has(node) ? leaving_ : coming_, rank, link);
+        f.nodes.push_back(node);
+        f.packets.push_back(packets);
+        f.words.resize(f.words.size() + box_words(packets));
+    }
     const auto tag = [&](const Face& f) {
         return cargo_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(f.link);
     };

@@ -1,5 +1,5 @@
-// The links of the torus: what nodes have put into their outboxes is copied into the inboxes of their neighbours, or
-// sent there where these are on another rank.
+// The links of the torus: what nodes have put into their outboxes is copied into the inboxes of their neighbours, by
+// copies between buffers or by a kernel, or sent there where these are on another rank.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/kernels/kernels.hpp"
 #include "host/ranks/transport.hpp"
 #include "host/torus/node_share.hpp"
 #include "host/torus/node_status.hpp"
@@ -17,6 +18,11 @@ namespace raya {
 
 /// "+x", "-x", "+y", ...
 std::string link_name(std::uint32_t link);
+
+using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Buffer<std::uint32_t>&, Uint<"nodes">,
+                                       Uint<"inboxes_of_link">, Uint<"capacity">, Uint<"packet_words">,
+                                       Uint<"outbox_status">, Uint<"inbox_status">, const Buffer<std::uint32_t>&,
+                                       Buffer<std::uint32_t>&, Buffer<std::uint32_t>&, Buffer<std::uint32_t>&>;
 
 class LinkExchange {
   public:
@@ -34,14 +40,19 @@ class LinkExchange {
     /// Boxes of `capacity` packets for every link of the nodes that are here (kernels/shared/traffic.h).
     LinkExchange(Session& session, const NodeShare& share, std::uint32_t capacity, const Cargo& cargo);
 
+    /// From now on a kernel moves what stays on the device, built for groups of `group` work-items. `status`: the
+    /// nodes' own, which outlives this; it says what exchange() is told. At first, and after use_copies(), copies do.
+    void use_kernel(const ExchangeKernel& kernel, std::uint32_t group, Buffer<std::uint32_t>& status);
+    void use_copies() { kernel_.reset(); }
+
     /// All inboxes are empty, nothing has been sent.
     void clear();
 
-    /// One exchange: over each link whose inbox at the other end is empty, all packets of the outbox, labelled "LABEL
-    /// +x" and so on. The links of one direction are one command, or several where boxes between must wait or differ so
-    /// much in length that copying as much of each as the longest needs would take longer. Adds the words that each
-    /// link is charged for to `words`, [node][link].
-    /// `status` and `words` are of all nodes, as what packets() and moved() say is; copied is what stays on the device.
+    /// One exchange: over each link whose inbox at the other end is empty, all packets of the outbox. By a kernel that
+    /// is one launch, "LABEL"; by copies, "LABEL +x" and so on, the links of one direction are one command, or several
+    /// where boxes between must wait or differ so much in length that copying as much of each as the longest needs
+    /// would take longer. Adds the words that each link is charged for to `words`, [node][link]. `status` and `words`
+    /// are of all nodes, as what packets() and moved() say is; copied is what stays on the device.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     /// What goes over links that lead to other ranks, or come from there, in one exchange(): adds the messages that
@@ -70,10 +81,19 @@ class LinkExchange {
     struct Span {
         std::uint32_t first, end, packets;
     };
+    void send(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words);
+    void copy_boxes(const NodeStatus& status, std::uint32_t link);
+    void launch();
+    void write_sent();
     std::vector<Span> spans(const NodeStatus& status, std::uint32_t link) const;
     std::uint64_t cost(const Span& span) const;  // in bytes that could be copied in its time
     bool waits(const NodeStatus& status, std::uint32_t link, std::uint32_t node) const;  // the inbox is not empty
     bool leads_away(std::uint32_t link, std::uint32_t node) const;                       // to another rank than its own
+
+    /// A link that leads from this rank to another one, or from there to here.
+    struct Crossing {
+        std::uint32_t link, node, rank;  // the node at its start; the other rank
+    };
 
     /// The boxes of one link that go from one rank to another, one after another as far as they are filled.
     struct Face {
@@ -82,6 +102,7 @@ class LinkExchange {
         std::vector<std::uint32_t> packets;
         std::vector<std::uint32_t> words;
     };
+    std::vector<Crossing> find_crossings() const;
     Face& face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const;
     void read_face(Face& face);
 
@@ -91,10 +112,18 @@ class LinkExchange {
     std::uint32_t nodes_, capacity_;  // nodes: on this device
     Cargo cargo_;
     Buffer<std::uint32_t> outboxes_, inboxes_, sent_;
+    struct Launched {
+        ExchangeKernel kernel;
+        std::uint32_t group;
+        Buffer<std::uint32_t>& status;
+        Buffer<std::uint32_t> ends;  // [link][slot]: slot of the node at the other end, RAYA_NO_SLOT
+    };
+    std::optional<Launched> kernel_;
     std::vector<std::uint32_t> sent_flags_, flags_there_;  // what is to be, and what is, in sent_
     std::vector<std::uint32_t> visited_;  // [link][node]: packets of the outbox that visit_new() has shown
     std::vector<std::uint64_t> packets_;
     std::uint64_t moved_ = 0;
+    const std::vector<Crossing> crossings_;  // by link, then by node
     std::vector<Face> leaving_, coming_;
     std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * cargo_.packet_words; }
     std::size_t outbox_at(std::uint32_t link, std::uint32_t slot) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/torus/census.hpp"
+#include "host/torus/loops_cut.hpp"
 #include "kernels/shared/node_counts.h"
 
 namespace raya {
@@ -15,37 +16,16 @@ std::uint32_t largest_node(const NodeMemories& memories) {
     return largest;
 }
 
-std::size_t own_words(const KernelOptions& options) { return options.group_size + 1; }  // of the work-items
+constexpr std::size_t kRow = 4;  // words; a node's words are moved up to where a row may start
 
-// Kernels copy a node's words into local memory where it has room for them beside what work-items share.
+// Kernels copy a node's words into local memory where it has room for them beside what work-items share, and where a
+// device does not count the turns of loops: they are those of a CPU, whose local memory is no faster.
 KernelOptions where_words_fit(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
-    const std::size_t most_shared = std::max<std::size_t>(RAYA_COUNT_WORDS, RAYA_ROUTE_WORDS);
-    const std::size_t words = most_shared + own_words(options) + largest_node(memories);
-    options.words_local = options.words_local && sizeof(std::uint32_t) * words <= device.local_memory_bytes;
+    const std::size_t shared =
+        std::max(RAYA_INJECT_WORDS(options.group_size, options.lanes), RAYA_ROUTE_WORDS(options.group_size));
+    const std::size_t bytes = sizeof(std::uint32_t) * (shared + kRow + largest_node(memories));
+    options.words_local = options.words_local && bytes <= device.local_memory_bytes && device.loop_turns == 0;
     return options;
-}
-
-bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
-
-// Whether a packet in an outbox is a message that its node has made.
-bool is_new_message(const raya_head& packet) {
-    return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
-}
-
-PacketRecord record_of(const TorusSettings& settings, std::uint32_t superstep, std::uint32_t node,
-                       const raya_head& packet) {
-    PacketRecord record{.superstep = superstep,
-                        .source = node,
-                        .destination = RAYA_ROOT,
-                        .head = packet,
-                        .words = settings.packets.return_words()};
-    if (is_return(packet)) return record;
-    record.words = settings.packets.ray_words;
-    const raya_torus& torus = settings.torus;
-    const raya_place v = raya_unpack_place(packet.voxel);
-    record.destination =
-        raya_node_of(torus, v.at[0] % torus.nodes[0], v.at[1] % torus.nodes[1], v.at[2] % torus.nodes[2]);
-    return record;
 }
 
 // What ranks have of their nodes, `each` words of every one, in the order of ranks and slots: as [node][each].
@@ -80,6 +60,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       nodes_(share.nodes()),
       node_words_(largest_node(memories)),
       options_(kernels.options()),
+      plan_(settings, memories, share, buffers, options_, session_.device()),
       memories_(session_.buffer<std::uint32_t>("node memories", memories.words.size())),
       starts_(session_.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
       run_(session_.buffer<raya_run>("run", 1)),
@@ -105,6 +86,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
     session_.write("scatter", starts_, memories.starts);
     write_ways_in();
     set_pixels(settings.pixels);
+    choose_link_move(kernels);
 }
 
 void NodeArray::write_ways_in() {
@@ -129,7 +111,7 @@ void NodeArray::set_pixels(const PixelSubset& pixels) {
 }
 
 LocalMemory<std::uint32_t> NodeArray::local_words(std::size_t shared) const {
-    return {shared + own_words(options_) + (options_.words_local ? node_words_ : 0)};
+    return {shared + (options_.words_local ? node_words_ + kRow : 0)};
 }
 
 void NodeArray::clear() {
@@ -139,34 +121,67 @@ void NodeArray::clear() {
     session_.fill("clear", ended_, 0);
     rays_.clear();
     homeward_.clear();
+    plan_.clear();
+}
+
+template <class Launch>
+void NodeArray::launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch) {
+    const node_kernels::Work work{budget.work};
+    launch(work, node_kernels::Again{0});
+    while (!budget.once && is_left(label, nodes)) launch(work, node_kernels::Again{1});
+}
+
+bool NodeArray::is_left(const std::string& label, Slots nodes) {
+    std::vector<std::uint32_t> status(std::size_t{nodes.count} * RAYA_STATUS_WORDS);
+    session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
+    check_loops(label, status);
+    for (std::size_t at = RAYA_STATUS_LEFT; at < status.size(); at += RAYA_STATUS_WORDS)
+        if (status[at] > 0) return true;
+    return false;
+}
+
+void NodeArray::check_loops(const std::string& label, std::span<const std::uint32_t> status) const {
+    for (std::size_t at = RAYA_STATUS_CUT; at < status.size(); at += RAYA_STATUS_WORDS)
+        if (status[at] > 0)
+            throw loops_cut(label, session_.device().name, "fewer objects in a voxel (--voxels), a shorter --queue");
 }
 
 void NodeArray::inject(Slots nodes) {
     if (nodes.count == 0) return;
-    session_.launch("inject", inject_, nodes.count, options_.group_size, memories_, starts_, run_,
-                    node_kernels::First{nodes.first}, local_words(RAYA_COUNT_WORDS), queues_, status_, events_, made_,
-                    ended_);
+    launch_all("inject", nodes, plan_.inject(), [&](node_kernels::Work work, node_kernels::Again again) {
+        session_.launch("inject", inject_, nodes.count, options_.group_size, memories_, starts_, run_,
+                        node_kernels::First{nodes.first}, work, again,
+                        local_words(RAYA_INJECT_WORDS(options_.group_size, options_.lanes)), queues_, status_, events_,
+                        made_, ended_);
+    });
 }
 
 void NodeArray::trace_voxel(Slots nodes, Room room) {
     if (nodes.count == 0) return;
-    session_.launch("trace_voxel", trace_, nodes.count, options_.group_size, memories_, starts_, run_,
-                    node_kernels::First{nodes.first}, room, local_words(RAYA_COUNT_WORDS), queues_, status_, events_,
-                    made_, ended_, treated_);
+    launch_all("trace_voxel", nodes, plan_.trace_voxel(), [&](node_kernels::Work work, node_kernels::Again again) {
+        session_.launch("trace_voxel", trace_, nodes.count, options_.group_size, memories_, starts_, run_,
+                        node_kernels::First{nodes.first}, room, work, again, local_words(RAYA_COUNT_WORDS), queues_,
+                        status_, events_, made_, ended_, treated_);
+    });
 }
 
 void NodeArray::route() {
-    session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_, node_kernels::First{0},
-                    local_words(RAYA_ROUTE_WORDS), queues_, rays_.outboxes(), homeward_.outboxes(), returns_, status_,
-                    ended_);
+    launch_all("route", all(), plan_.route(), [&](node_kernels::Work work, node_kernels::Again again) {
+        session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_, node_kernels::First{0},
+                        work, again, local_words(RAYA_ROUTE_WORDS(options_.group_size)), queues_, rays_.outboxes(),
+                        homeward_.outboxes(), returns_, status_, ended_);
+    });
 }
 
 void NodeArray::accept(Slots nodes, Room room, std::uint32_t superstep) {
     if (nodes.count == 0) return;
-    session_.launch("accept", accept_, nodes.count, options_.group_size, memories_, starts_, run_, room,
-                    Uint<"turn">{superstep}, node_kernels::First{nodes.first}, ways_in_, rays_.sent(), homeward_.sent(),
-                    LocalMemory<std::uint32_t>{options_.group_size + 1}, queues_, rays_.inboxes(), homeward_.inboxes(),
-                    homeward_.outboxes(), returns_, status_, ended_);
+    launch_all("accept", nodes, plan_.accept(), [&](node_kernels::Work work, node_kernels::Again again) {
+        session_.launch("accept", accept_, nodes.count, options_.group_size, memories_, starts_, run_, room,
+                        Uint<"turn">{superstep}, node_kernels::First{nodes.first}, ways_in_, rays_.sent(),
+                        homeward_.sent(), work, again,
+                        LocalMemory<std::uint32_t>{RAYA_ACCEPT_WORDS(options_.group_size)}, queues_, rays_.inboxes(),
+                        homeward_.inboxes(), homeward_.outboxes(), returns_, status_, ended_);
+    });
 }
 
 std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
@@ -200,9 +215,12 @@ std::vector<std::uint64_t> NodeArray::link_packets() const {
 NodeStatus NodeArray::look() {
     std::vector<std::uint32_t> own(status_.size());
     session_.read("look", status_, own);
+    check_loops("look", own);
     const std::vector<std::uint32_t> all =
         ranks_.all_gather(std::span<const std::uint32_t>(own), sizes(RAYA_STATUS_WORDS));
-    return NodeStatus(in_order_of_nodes(share_, ranks_.count(), all, RAYA_STATUS_WORDS));
+    const NodeStatus status(in_order_of_nodes(share_, ranks_.count(), all, RAYA_STATUS_WORDS));
+    plan_.look(status);
+    return status;
 }
 
 std::vector<std::size_t> NodeArray::sizes(std::size_t of_node) const {
@@ -230,27 +248,6 @@ void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns
     const std::size_t waiting = status.at(RAYA_ROOT, RAYA_STATUS_HOST), before = returns.size();
     returns.resize(before + waiting);
     session_.read("gather", returns_, std::span(returns).subspan(before));
-}
-
-void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
-    if (!sink) {
-        rays_.visit_new(status, {});
-        return homeward_.visit_new(status, {});
-    }
-    std::vector<PacketRecord> own;
-    const auto take = [&](std::uint32_t node, const raya_head& packet) {
-        if (is_new_message(packet)) own.push_back(record_of(settings_, superstep, node, packet));
-    };
-    rays_.visit_new(status, take);
-    homeward_.visit_new(status, take);
-    std::vector<PacketRecord> records = ranks_.many() ? records_of_all(own) : std::move(own);
-    std::stable_sort(records.begin(), records.end(),
-                     [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
-    for (const PacketRecord& record : records) sink(record);
-}
-
-std::vector<PacketRecord> NodeArray::records_of_all(const std::vector<PacketRecord>& own) {
-    return ranks_.gather(std::span(own), ranks_.all_gather(own.size()));
 }
 
 std::vector<std::uint64_t> NodeArray::read_events() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/ranks/ranks.hpp"
+#include "host/torus/launch_plan.hpp"
 #include "host/torus/link_exchange.hpp"
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/node_kernels.hpp"
@@ -18,7 +19,8 @@
 
 namespace raya {
 
-/// The kernels are launched with one work-group for each node; each step is labelled with its kernel's name.
+/// The kernels are launched with one work-group for each node, again and again where a launch leaves something to do;
+/// each step is labelled with its kernel's name. DeviceError where the device ends loops early.
 class NodeArray {
   public:
     /// Builds the kernels with `options` as the job needs them and takes the device memory. `memories` has the nodes of
@@ -69,6 +71,7 @@ class NodeArray {
     PacketCounts read_ended();
 
     std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear(): messages; of all ranks
+    bool links_by_kernel() const { return links_by_kernel_; }  // else by copies
     std::uint64_t moved_rays() const { return rays_.moved(); }
     std::uint64_t moved_returns() const { return homeward_.moved(); }
     const std::string& build_options() const { return build_options_; }
@@ -78,9 +81,17 @@ class NodeArray {
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
               const NodeShare& share, Ranks& ranks);
     void write_ways_in();
+    void choose_link_move(Kernels& kernels);
+    void use_kernel(const ExchangeKernel& kernel);
+    double exchange_seconds();
+    /// Launches by `launch(work, again)` until no node of `nodes` has anything left.
+    template <class Launch>
+    void launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
+    bool is_left(const std::string& label, Slots nodes);
+    void check_loops(const std::string& label, std::span<const std::uint32_t> status) const;
     std::vector<PacketRecord> records_of_all(const std::vector<PacketRecord>& own);
     std::vector<std::size_t> sizes(std::size_t of_node) const;  // [rank]: elements, so many of each of its nodes
-    /// Local memory of a kernel: `shared` words, those of its work-items, and the node's words where kernels copy them.
+    /// Local memory of a kernel: `shared` words, and the node's where kernels copy them.
     LocalMemory<std::uint32_t> local_words(std::size_t shared) const;
     PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
 
@@ -91,6 +102,7 @@ class NodeArray {
     Ranks& ranks_;
     std::uint32_t nodes_, node_words_;  // nodes: on this device
     KernelOptions options_;
+    LaunchPlan plan_;
     Buffer<std::uint32_t> memories_, starts_;
     Buffer<raya_run> run_;
     Buffer<raya_packet> queues_;
@@ -103,6 +115,7 @@ class NodeArray {
     node_kernels::TraceVoxel trace_;
     node_kernels::Route route_;
     node_kernels::Accept accept_;
+    bool links_by_kernel_ = false;
     std::string build_options_;
 };
 

@@ -30,7 +30,7 @@ class JobParts {
     const std::uint32_t* at(std::uint32_t word) const { return words_.data() + word; }
     std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
     std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
-    std::size_t surfaces() const { return surface(header.lights_at); }
+    std::size_t surfaces() const { return surface(header.objects.spheres_at); }
     // The number of the surface whose words start there.
     std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
 
@@ -41,6 +41,13 @@ class JobParts {
         if (number < first_polygon()) return plane(number - o.spheres);
         if (number < first_cone()) return at(o.polygons_at + (number - first_polygon()) * RAYA_POLYGON_WORDS);
         return at(o.cones_at + (number - first_cone()) * RAYA_CONE_WORDS);
+    }
+
+    // Where the surface of an object starts.
+    std::uint32_t surface_of(std::uint32_t number) const {
+        const raya_objects& o = header.objects;
+        return number < o.spheres ? *at(raya_sphere_surfaces_at(o.spheres_at, o.spheres) + number)
+                                  : object(number)[RAYA_OBJECT_SURFACE_AT];
     }
 
   private:
@@ -65,6 +72,8 @@ VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32
     return {{first, last}, {first, polygons}, {polygons, cones}, {cones, last}};
 }
 
+std::uint64_t in_rows(std::uint64_t words) { return (words + 3) / 4 * 4; }
+
 class NodePacker {
   public:
     NodePacker(const PackedJob& job, const Partition& partition, const raya_torus& torus)
@@ -83,11 +92,11 @@ class NodePacker {
                               std::uint64_t{h.objects.planes} * RAYA_PLANE_WORDS;
         for (std::uint32_t local = 0; local < voxels; ++local) {
             const VoxelLists lists = lists_of_local(node, local);
-            words += lists.all.size() + lists.spheres.size() * RAYA_SPHERE_WORDS +
-                     lists.polygons.size() * RAYA_POLYGON_WORDS + lists.cones.size() * RAYA_CONE_WORDS;
+            words = in_rows(words) + lists.all.size() + lists.spheres.size() * (RAYA_SPHERE_WORDS + 1) +
+                    lists.polygons.size() * RAYA_POLYGON_WORDS + lists.cones.size() * RAYA_CONE_WORDS;
             for (const std::uint32_t number : lists.polygons) words += outline_words(job_.object(number));
         }
-        return words;
+        return in_rows(words);
     }
 
     // Appends the node's words; returns the number of objects that it holds.
@@ -112,6 +121,7 @@ class NodePacker {
         header.job.objects.planes_at = here();
         for (std::uint32_t i = 0; i < header.job.objects.planes; ++i) append_object(job_.plane(i), RAYA_PLANE_WORDS);
         const std::uint64_t objects = append_voxels(header);
+        fill_row();
         put_record(to, start_, header);
         return objects;
     }
@@ -132,8 +142,11 @@ class NodePacker {
             surface_at_[job_.surface(object[RAYA_OBJECT_SURFACE_AT])];
     }
 
-    void need_surface(const std::uint32_t* object) {
-        const std::size_t surface = job_.surface(object[RAYA_OBJECT_SURFACE_AT]);
+    // Rows start at a multiple of four words; so do nodes.
+    void fill_row() { to_->resize(start_ + in_rows(here())); }
+
+    void need_surface(std::uint32_t at) {
+        const std::size_t surface = job_.surface(at);
         if (std::exchange(seen_[surface], searches_) != searches_) surfaces_.push_back(surface);
     }
 
@@ -141,10 +154,11 @@ class NodePacker {
     void find_surfaces(std::uint32_t node) {
         ++searches_;
         surfaces_.clear();
-        for (std::uint32_t i = 0; i < job_.header.objects.planes; ++i) need_surface(job_.plane(i));
+        for (std::uint32_t i = 0; i < job_.header.objects.planes; ++i)
+            need_surface(job_.plane(i)[RAYA_OBJECT_SURFACE_AT]);
         const std::uint32_t voxels = raya_node_voxels(torus_, partition_.grid, node);
         for (std::uint32_t local = 0; local < voxels; ++local)
-            for (const std::uint32_t number : lists_of_local(node, local).all) need_surface(job_.object(number));
+            for (const std::uint32_t number : lists_of_local(node, local).all) need_surface(job_.surface_of(number));
         std::sort(surfaces_.begin(), surfaces_.end());
     }
 
@@ -171,8 +185,11 @@ class NodePacker {
     raya_voxel_memory append_voxel(const VoxelLists& lists, const raya_objects& planes) {
         raya_voxel_memory voxel{planes, 0, job_.header.objects.spheres};
         voxel.objects.spheres = static_cast<std::uint32_t>(lists.spheres.size());
+        fill_row();
         voxel.objects.spheres_at = here();
-        for (const std::uint32_t number : lists.spheres) append_object(job_.object(number), RAYA_SPHERE_WORDS);
+        for (const std::uint32_t number : lists.spheres) append_words(job_.object(number), RAYA_SPHERE_WORDS);
+        for (const std::uint32_t number : lists.spheres)
+            to_->push_back(surface_at_[job_.surface(job_.surface_of(number))]);
         voxel.objects.cones = static_cast<std::uint32_t>(lists.cones.size());
         voxel.objects.cones_at = here();
         for (const std::uint32_t number : lists.cones) append_object(job_.object(number), RAYA_CONE_WORDS);

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "host/error.hpp"
+#include "host/kernels/tuned.hpp"
 #include "host/scene/word_records.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/windows.hpp"
@@ -24,8 +25,7 @@ TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& dev
     if (scene.lights.size() > RAYA_MOST_LIGHTS)
         throw UserError(fmt::format("{}: {} lights; packets of the torus name at most {}", scene.name,
                                     scene.lights.size(), RAYA_MOST_LIGHTS));
-    if (!s.kernels.lanes) s.kernels.lanes = default_lanes(device);
-    if (!s.kernels.group_size) s.kernels.group_size = default_group_size(device);
+    s.kernels = chosen(s.kernels, device, {.torus = true, .fp32 = s.format.is_fp32()});
     check_kernel_options({.lanes = s.kernels.lanes, .group_size = s.kernels.group_size, .bounces = s.bounces}, device);
     return s;
 }
@@ -48,7 +48,8 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones(),
-            .costs = s.history};
+            .costs = s.history,
+            .more = s.kernels.more};
 }
 
 void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob& job, const Partition& partition) {

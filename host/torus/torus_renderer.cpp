@@ -126,7 +126,7 @@ void TorusRenderer::Parts::build() {
     const Clock::time_point start = Clock::now();
     nodes = std::make_unique<NodeArray>(session, settings, job.memories, job.buffers, options, share, ranks);
     KernelOptions one_lane = options;
-    one_lane.lanes = one_lane.group_size = 1;
+    one_lane.lanes = 1;
     Kernels kernels(session, one_lane, settings.kernels.sources);
     composer = std::make_unique<Composer>(kernels);
     nodes->clear();
@@ -149,7 +149,8 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Packet
     TorusResult result;
     std::vector<raya_head> returns;
     returns.reserve(std::min<std::uint64_t>(2 * pixels_of(p.settings), kReservedReturns));
-    if (const auto stand = p.run(result, returns, progress, {sink, packets_every, step_sink, work_sink}))
+    const SuperstepSink& steps = p.ranks.first() ? step_sink : SuperstepSink{};
+    if (const auto stand = p.run(result, returns, progress, {sink, packets_every, steps, work_sink}))
         throw Standstill(*stand);
     if (p.ranks.first()) p.compose(result, returns);
     p.collect(result);
@@ -177,7 +178,6 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
     nodes->clear();
     result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
     Room room = Room::kWholeTree;
-    bool crowded = false;
     int stands = 0;  // supersteps without progress
     std::uint64_t most_live = 0;
     compute(nodes->all(), room, true, watch.work);
@@ -198,19 +198,19 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
         most_live = std::max(most_live, census.live);
         const bool ended = census.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && census.all_made;
         if (progress) progress(ended ? 1 : share_done(census, returns.size(), most_live));
-        crowded = census.fullest > job.buffers.queue / 4;
+        const bool injects = !census.all_made && census.fullest <= job.buffers.queue / 4;
         // What a superstep with little room has accepted is seen in the next one.
         stands = census.progress == 0 && most_words == 0 ? stands + 1 : 0;
         const Room next = stands > 0 ? Room::kTight : Room::kWholeTree;
         const bool goes_on = !ended && stands < 3;
-        if (goes_on && nodes->inner().count > 0) compute(nodes->inner(), next, !crowded, watch.work);
+        if (goes_on && nodes->inner().count > 0) compute(nodes->inner(), next, injects, watch.work);
         nodes->arrive();
         nodes->accept(nodes->border(), room, superstep);
         if (ended) return {};
         if (!goes_on)
             return StandstillFigures{
                 scene, superstep, census.live, census.full, raya_nodes(settings.torus), job.buffers.queue};
-        if (nodes->border().count > 0) compute(nodes->border(), next, !crowded, watch.work);
+        if (nodes->border().count > 0) compute(nodes->border(), next, injects, watch.work);
         room = next;
     }
 }
@@ -273,10 +273,12 @@ void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.buffers = job.buffers;
     result.copied_words = nodes->words_local() ? job.words : 0;
     result.node_bytes = node_bytes(job.buffers);
+    result.links_by_kernel = nodes->links_by_kernel();
     result.parts_here = share.nodes();
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;
     result.build_options = nodes->build_options();
+    result.tuned = settings.kernels.origin;
     result.build_s = build_s;
     result.commands = session.profile().summary();
 }

@@ -37,11 +37,13 @@ struct TorusResult {
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // of the fullest node: words and buffers
     std::uint64_t copied_words = 0;   // of the scene, by all nodes into local memory, whenever a kernel starts
+    bool links_by_kernel = false;     // packets came over the device's links by a kernel, else by copies
     std::uint64_t contributions = 0;  // return packets that reached the host
     std::uint32_t parts_here = 0;     // nodes of this rank
     RankTraffic traffic;              // of this rank, while it rendered
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
+    std::string tuned;                 // where lanes, group and what goes with them come from (host/kernels/tuned.hpp)
     double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
     std::vector<LabelSummary> commands;
 };

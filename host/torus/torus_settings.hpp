@@ -20,6 +20,10 @@ struct PixelSubset {
     std::uint32_t stride = 1, first = 0;
 };
 
+/// How packets come over the links of a device: as copies between buffers, as a kernel of their own, or by the one that
+/// takes less time there. The same packets arrive.
+enum class LinkMove { kMeasured, kCopies, kKernel };
+
 struct TorusSettings {
     Machine machine;
     std::uint32_t width = 0, height = 0;  // pixels
@@ -35,6 +39,8 @@ struct TorusSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
+    LinkMove link_move = LinkMove::kMeasured;
+    std::uint32_t work_per_launch = 0;  // of a node, in a kernel's units; 0: as the device needs it (LaunchPlan)
     bool history = false;  // nodes tell what each packet cost them, which TorusRenderer::render() needs for a history
 };
 

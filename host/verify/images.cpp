@@ -22,11 +22,11 @@ std::string mapping_name(const MappingRule& mapping) {
 // What decides how a picture is made, and no bit of it.
 struct Rendering {
     std::string picture;
-    bool quick = false;
+    Depth from = Depth::kFull;                // and deeper
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's own
     MappingRule mapping = cyclic_mapping(8);  // of the ring
     std::uint32_t pes = kPictureSide;
-    std::uint32_t pixels_per_launch = 0;  // of each PE; 0: all
+    std::uint32_t work_per_launch = 0;  // tests and steps of a lane; 0: as much as takes about a second
     AccelKind accel = AccelKind::kNone;
     bool torus = false;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
@@ -41,7 +41,7 @@ struct Rendering {
                                 : fmt::format("{} on {}{}", mapping_name(mapping), pes,
                                               accel == AccelKind::kNone ? "" : ", " + accel_text({.kind = accel}));
         if (mapping.kind == RAYA_FOLD_BLOCK) way += ", block fold";
-        if (pixels_per_launch) way += fmt::format(", {} pixels a launch", pixels_per_launch);
+        if (work_per_launch) way += fmt::format(", launches of {} tests", work_per_launch);
         if (global_words) way += ", global words";
         if (refined) way += ", division refined";
         if (lanes) way += fmt::format(", {}x{}", lanes, group_size);
@@ -66,7 +66,7 @@ Rendered render_on_ring(const Verification& v, Session& session, const Rendering
     RingSettings settings = plain_settings(picture);
     settings.mapping = make_mapping(r.mapping, {kPictureSide, kPictureSide}, r.pes);
     settings.accel.kind = r.accel;
-    settings.pixels_per_launch = r.pixels_per_launch;
+    settings.work_per_launch = r.work_per_launch;
     settings.kernels = kernels_for(v, r);
     RingResult result = RingRenderer(session, scene_of(picture), settings).render();
     return {std::move(result.image), result.build_options};
@@ -153,27 +153,28 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
 
 // Every kernel and every option at least once; renderings of equal build options follow each other, as they share a
 // build. The quick ones take what kernels do without local memory or exact division along with what they are there for:
-// a build is most of a rendering's time.
+// a build is most of a rendering's time. The brief ones are what one build of each machine shows, and one of a reduced
+// format.
 std::vector<Rendering> usual_renderings() {
     constexpr auto k2d = Links::kTorus2d;
     constexpr auto kRoot = Injection::kRoot;
     return {
-        {.picture = "glass fp32", .quick = true},
-        {.picture = "glass fp32 filter", .quick = true, .mapping = cyclic_mapping(5), .pes = 10},
-        {.picture = "glass fp32 axes", .quick = true, .mapping = rows_mapping(), .pes = 16},
-        {.picture = "glass fp32 diagonals", .quick = true, .mapping = grid_mapping(4, 4), .pes = 16},
+        {.picture = "glass fp32", .from = Depth::kBrief},
+        {.picture = "glass fp32 filter", .from = Depth::kBrief, .mapping = cyclic_mapping(5), .pes = 10},
+        {.picture = "glass fp32 axes", .from = Depth::kBrief, .mapping = rows_mapping(), .pes = 16},
+        {.picture = "glass fp32 diagonals", .from = Depth::kQuick, .mapping = grid_mapping(4, 4), .pes = 16},
         {.picture = "glass fp32",
-         .quick = true,
+         .from = Depth::kQuick,
          .mapping = cyclic_mapping(8, Fold::kBlock),
          .pes = 7,
-         .pixels_per_launch = 9},
-        {.picture = "glass fp32", .quick = true, .mapping = tiles_mapping(5, 4), .pes = 7},
+         .work_per_launch = 40},
+        {.picture = "glass fp32", .from = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
         {.picture = "glass fp32", .global_words = true},
         {.picture = "glass fp32", .refined = true},
         {.picture = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
         {.picture = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
         {.picture = "ties fp32",
-         .quick = true,
+         .from = Depth::kQuick,
          .mapping = blocks_mapping(),
          .pes = 5,
          .global_words = true,
@@ -183,18 +184,23 @@ std::vector<Rendering> usual_renderings() {
         {.picture = "ties fp32", .accel = AccelKind::kBvh},
         {.picture = "ties fp32", .torus = true},
         {.picture = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
-        {.picture = "polygons fp32", .quick = true, .accel = AccelKind::kGrid},
+        {.picture = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kGrid},
         {.picture = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
-        {.picture = "polygons fp32", .quick = true, .accel = AccelKind::kBvh},
+        {.picture = "polygons fp32", .from = Depth::kQuick, .accel = AccelKind::kBvh},
         {.picture = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
         {.picture = "cones fp32", .accel = AccelKind::kBvh},
-        {.picture = "polygons fp32", .quick = true, .torus = true},
+        {.picture = "polygons fp32", .from = Depth::kQuick, .torus = true},
         {.picture = "polygons fp32", .torus = true, .global_words = true},
-        {.picture = "polygons fp32", .quick = true, .torus = true, .nodes = {3, 2, 2}, .links = k2d, .inject = kRoot},
+        {.picture = "polygons fp32",
+         .from = Depth::kBrief,
+         .torus = true,
+         .nodes = {3, 2, 2},
+         .links = k2d,
+         .inject = kRoot},
         {.picture = "cones fp32", .mapping = blocks_mapping(), .pes = 5, .global_words = true},
-        {.picture = "mirrors spa22", .quick = true, .mapping = column_mapping(), .pes = kPictureSide},
-        {.picture = "mirrors spa22 filter", .quick = true, .mapping = cyclic_mapping(16), .pes = kPictureSide},
-        {.picture = "cones e5m10", .quick = true, .refined = true},
+        {.picture = "mirrors spa22", .from = Depth::kBrief, .mapping = column_mapping(), .pes = kPictureSide},
+        {.picture = "mirrors spa22 filter", .from = Depth::kQuick, .mapping = cyclic_mapping(16), .pes = kPictureSide},
+        {.picture = "cones e5m10", .from = Depth::kQuick, .refined = true},
         {.picture = "mirrors spa22", .refined = true},
         {.picture = "polygons spa22", .torus = true, .refined = true},
         {.picture = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
@@ -240,7 +246,7 @@ void verify_images(Verification& v) {
         return r.lanes == 0 || v.given_lanes() == 0 || r.lanes == v.given_lanes();
     };
     for (const Rendering& r : renderings)
-        if ((v.full() || r.quick) && has_lanes(r))
+        if (v.depth() >= r.from && has_lanes(r))
             v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
 }
 

@@ -9,8 +9,8 @@
 
 #include "host/error.hpp"
 #include "host/files/json.hpp"
+#include "host/files/own_process.hpp"
 #include "host/files/program.hpp"
-#include "host/verify/own_process.hpp"
 
 namespace raya {
 namespace {

@@ -13,6 +13,18 @@ void visit_layers(Verification& verification) {
 
 }  // namespace
 
+const char* depth_name(Depth depth) {
+    switch (depth) {
+        case Depth::kBrief:
+            return "brief";
+        case Depth::kQuick:
+            return "quick";
+        case Depth::kFull:
+            return "full";
+    }
+    return "";
+}
+
 Verification::Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs)
     : device_(device), info_(device_info(device)), settings_(settings), sink_(sink), runs_(runs) {
     check_patches(settings.sources);  // else one that does not fit would look like a fault seen

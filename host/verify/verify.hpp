@@ -12,9 +12,13 @@
 namespace raya {
 
 enum class Depth {
+    kBrief,  // of kQuick what few kernels and few rays show: for simulators, and compilers that take a minute a kernel
     kQuick,  // one width of lanes, the usual formats, a dozen images: seconds
     kFull    // every format, lanes and group size: minutes
 };
+
+/// "quick"
+const char* depth_name(Depth depth);
 
 struct VerifySettings {
     Depth depth = Depth::kQuick;
@@ -44,7 +48,8 @@ class Verification {
     Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs = true);
 
     const DeviceInfo& device() const { return info_; }
-    bool full() const { return settings_.depth == Depth::kFull; }
+    Depth depth() const { return settings_.depth; }
+    bool full() const { return depth() == Depth::kFull; }
 
     /// Runs one check in a session of its own: a failed command may leave a context of no use.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);

@@ -1,27 +1,17 @@
 #include "host/verify/worker.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <unistd.h>
-
-#include <cerrno>
 
 #include "host/cl/driver_call.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
+#include "host/files/own_process.hpp"
 
 namespace raya {
 namespace {
 
 // What a driver says need not be UTF-8.
-void send(int lines, const Json& object) {
-    const std::string text = object.dump() + "\n";
-    for (std::size_t sent = 0; sent < text.size();) {
-        const ssize_t count = ::write(lines, text.data() + sent, text.size() - sent);
-        if (count < 0 && errno != EINTR) return;
-        if (count > 0) sent += static_cast<std::size_t>(count);
-    }
-}
+void send(int lines, const Json& object) { send_line(lines, object.dump()); }
 
 // Names from which somebody sees what --only takes: the first of each layer.
 std::string some_names(const std::vector<std::string>& names) {
@@ -87,8 +77,8 @@ NamedDevices named_devices(const std::string& wanted) {
 }
 
 void run_worker(int lines, const std::string& wanted, std::size_t index, const VerifySettings& settings) {
-    leave_driver_crashes();               // the supervisor tells of them
-    ::fcntl(lines, F_SETFD, FD_CLOEXEC);  // not for compilers that the driver starts
+    leave_driver_crashes();  // the supervisor tells of them
+    keep_lines_to_oneself(lines);
     const auto stop = [&](const std::exception& error, const char* kind) {
         send(lines, {{"error", error.what()}, {"kind", kind}});
     };

@@ -5,7 +5,7 @@
 #include "kernels/shared/torus.h"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group of `turn_round`, 1..64
+#define RAYA_GROUP 1  // L: work-items in a work-group of `turn_round`, 1..1024
 #endif
 
 // Who owns a pixel and where it lies in its owner's share, both ways. A work-item takes one pixel.

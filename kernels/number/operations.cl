@@ -7,7 +7,7 @@
 #include "kernels/shared/chains.h"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group, 1..64
+#define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
 // Written out, chain by chain: an array with a loop would stay in memory.

@@ -13,16 +13,18 @@
 //         where nothing was hit add the background; else add the ambient term, put the
 //         refracted ray aside, and add each light that a shadow ray reaches                (shading/)
 //         go on with the reflected ray, else with the deepest waiting refracted one, else without a walk
+//         end the launch where a lane has spent its work, and keep the trees for the next one  (ring/kept_trees.clh)
 //
 // A point's colour is summed in the order of its own ray tree, a pixel's in the order of its points, so the bits do
 // not depend on V, group size, mapping or device.
 // Limits: a PE's share < 2^32 pixels; the cost of one pixel < 2^64 cycles; its events < 2^32 each.
-#include "kernels/ring/pixel_store.clh"
+#include "kernels/ring/kept_trees.clh"
 #include "kernels/shading/camera.clh"
 #include "kernels/shading/shade.clh"
+#include "kernels/shared/loop_canary.clh"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group, 1..64
+#define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
 // Starts the walk of a point in the lanes `fresh`, `row` down and `column` to the right of the first pixel's own.
@@ -61,26 +63,44 @@ static inline void put_trees(words scene, tree* trees, ray_pool* pool) {
     }
 }
 
-static inline void trace_share(words scene, pixel_store* store, volatile __local uint* next) {
-    tree trees[RAYA_TREES];
-    tree_pixels pixels[RAYA_TREES];
+// Follows the trees to their ends, or until a lane has spent its `work`. Returns whether anything is left to do.
+static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree_pixels* pixels,
+                              volatile __local uint* next, uint work) {
     ray_pool pool;
     open_pool(&pool);
-    for (uint i = 0; i < RAYA_TREES; ++i) {
-        clear_tree(&trees[i]);
-        clear_pixels(&pixels[i]);
-    }
     for (;;) {
         int walking = 0;
         for (uint i = 0; i < RAYA_TREES; ++i) {
             if (mask_any(mask_not(trees[i].walking))) next_points(scene, &trees[i], store, &pixels[i], next);
             walking |= mask_any(trees[i].walking);
         }
-        if (!walking) return;
+        if (!walking) return !store->drained;
+        if (mask_any(pool.spent >= (index)(work))) return 1;
         put_trees(scene, trees, &pool);
         find_hits(scene, &pool, 0);
         shade(scene, trees, &pool);
     }
+}
+
+// As trace_trees(); trees that the last launch has kept in `kept` are gone on with, if it `goes_on`, and those that are
+// left are kept there.
+static inline int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work,
+                              __global uint* kept, int goes_on) {
+    tree trees[RAYA_TREES];
+    tree_pixels pixels[RAYA_TREES];
+    index left = (index)(0);
+    keeper taken = open_keeper(kept, 1), put = open_keeper(kept, 0);
+    if (goes_on) keep_index(&taken, &left);
+    for (uint i = 0; i < RAYA_TREES; ++i) {
+        clear_tree(&trees[i]);
+        clear_pixels(&pixels[i]);
+    }
+    if (mask_any(left != (index)(0))) keep_trees(taken, trees, pixels);
+    left = (index)(trace_trees(scene, store, trees, pixels, next, work));
+    keep_index(&put, &left);
+    if (!mask_any(left != (index)(0))) return 0;
+    keep_trees(put, trees, pixels);
+    return 1;
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
@@ -88,26 +108,35 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            const uint word_count,                    // how many
            const uint block,                         // number in the share of the first pixel of a PE's block
            const uint capacity,                      // pixels in a block
-           const uint begin,                         // pixels `begin` to `end` - 1 of each share are traced now;
-           const uint end,                           // they lie in the block
+           const uint end,                           // pixels of each share up to `end` - 1 are traced; they lie in the
+                                                     // block
            const uint points,                        // RAYA_POINTS_*: which points of them
            const uint first_pe,                      // number of the PE that is work-group 0
+           const uint work,                          // tests and steps of a lane's rays after which the launch ends, or
+                                                     // pixels looked at for their marks
            __global const uchar* restrict marks,     // [PE][capacity]: not 0 where a pixel gets new points; of no use
                                                      // for RAYA_POINTS_OWN
-           __local uint* memory,                     // the number of the PE's next pixel, then, where
-                                                     // RAYA_WORDS_LOCAL is 1, word_count words
+           __local raya_trace_progress* shared,      // by the work-items of a PE
+           __local uint4* memory,                    // where RAYA_WORDS_LOCAL is 1, word_count words, in whole rows
            __global float* restrict pixels,          // [PE][capacity][3]: linear rgb; read where points are new
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels traced now
-           __global ulong* restrict events)          // [PE][work-item][RAYA_EVENTS], added to
+           __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS], added to
+           __global raya_trace_progress* restrict progress,  // [PE]: of the last launch, then of this one
+           __global uint* restrict kept)             // what work-items go on with (kernels/ring/kept_trees.clh)
 {
     // An argument, not a __local variable: with PoCL 3.1 pixels were lost where a function that
     // took its address was not inlined.
-    volatile __local uint* next = memory;
+    volatile __local raya_trace_progress* mine = shared;
     const uint group = get_group_id(0), item = get_local_id(0);
-    if (item == 0) *next = begin;
+    const int goes_on = progress[group].left > 0;
+    if (item == 0) {
+        mine->next = progress[group].next;
+        mine->left = mine->cut = 0;
+    }
 #if RAYA_WORDS_LOCAL
-    for (uint i = item; i < word_count; i += RAYA_GROUP) memory[1 + i] = broadcast[i];
-    const words scene = memory + 1;
+    __local uint* const own = (__local uint*)memory;
+    for (uint i = item; i < word_count; i += RAYA_GROUP) own[i] = broadcast[i];
+    const words scene = own;
 #else
     const words scene = broadcast;
 #endif
@@ -118,11 +147,18 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.block = block;
     store.end = min(end, raya_share_size(store.share));
     store.points = points;
+    store.looks = work;
     store.pixels = pixels + (size_t)group * capacity * 3;
     store.marks = marks + (size_t)group * capacity;
     store.cycles = cycles + (size_t)group * capacity;
     open_store(&store);
-    trace_share(scene, &store, next);
-    __global ulong* mine = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
-    for (uint e = 0; e < RAYA_EVENTS; ++e) mine[e] += sum_of(store.totals[e]);
+    if (trace_share(scene, &store, &mine->next, work, kept, goes_on)) atomic_inc(&mine->left);
+    __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
+    for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += sum_of(store.totals[e]);
+    if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // all have seen whether they go on
+    if (item) return;
+    progress[group].next = min((uint)mine->next, store.end);
+    progress[group].left = mine->left;
+    progress[group].cut = mine->cut;
 }

@@ -1,7 +1,8 @@
 // The job: all that the host broadcasts to every PE, as 32-bit words. A header, then the
 // scene in sections of fixed strides:
 //
-//   raya_job | surfaces | lights | spheres | planes | cones | polygons | outline of each polygon, normals of a patch
+//   raya_job | surfaces | spheres | where the surface of each sphere starts | lights | planes | cones | polygons |
+//   outline of each polygon, normals of a patch
 //
 // Every word holds a float (as its bits) or an unsigned integer. Objects are numbered through spheres, planes, polygons
 // and cones. "at" words are distances from the job's first word.
@@ -32,8 +33,9 @@ typedef struct {
     float background[3];             // radiance of a miss
     float ambient;                   // intensity A
     float extent;                    // size of the scene: largest coordinate of eye and finite objects, scene units
+    raya_u32 of_no_use[2];           // sections of rows start at a multiple of four words
 } raya_job;
-RAYA_SHARED_SIZE(raya_job, 4 * (5 + 3 + 8 + 1 + RAYA_EVENTS + 17));
+RAYA_SHARED_SIZE(raya_job, 4 * (5 + 3 + 8 + 1 + RAYA_EVENTS + 17 + 2));
 
 enum {  // words of a surface
     RAYA_SURFACE_COLOUR = 0,      // r g b; colour `even` of a checker
@@ -49,15 +51,19 @@ enum {  // words of a surface
 
 enum { RAYA_LIGHT_POSITION = 0, RAYA_LIGHT_COLOUR = 3, RAYA_LIGHT_WORDS = 6 };
 
-// Every object starts alike: three words of place (centre, normal or base), one of size, and
-// where its surface's words start.
+// Every object starts alike: three words of place (centre, normal or base), one of size, and, but for spheres, where its
+// surface's words start.
 enum { RAYA_OBJECT_PLACE = 0, RAYA_OBJECT_SIZE = 3, RAYA_OBJECT_SURFACE_AT = 4, RAYA_OBJECT_WORDS = 5 };
 
-enum {  // words of a sphere
+enum {  // words of a sphere: a row at a multiple of four words, loaded at once
     RAYA_SPHERE_CENTRE = RAYA_OBJECT_PLACE,
     RAYA_SPHERE_SQUARE = RAYA_OBJECT_SIZE,  // r^2, negated where only the inside is visible
-    RAYA_SPHERE_WORDS = RAYA_OBJECT_WORDS
+    RAYA_SPHERE_WORDS = 4
 };
+// Where the surfaces of a list's spheres start stands behind the last of them, a word for each.
+RAYA_SHARED_FUNCTION raya_u32 raya_sphere_surfaces_at(raya_u32 spheres_at, raya_u32 spheres) {
+    return spheres_at + spheres * RAYA_SPHERE_WORDS;
+}
 
 enum {  // words of a plane n.x = d
     RAYA_PLANE_NORMAL = RAYA_OBJECT_PLACE,   // unit

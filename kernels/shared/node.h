@@ -1,8 +1,9 @@
 // The memory of a torus node: all that it holds of the scene, as 32-bit words. A header,
 // then sections of fixed strides:
 //
-//   raya_node | surfaces | lights | raya_voxel_memory of each of its voxels | planes | of each voxel: spheres, cones,
-//   polygons with their outlines, and the numbers that its objects have in the whole scene
+//   raya_node | surfaces | lights | raya_voxel_memory of each of its voxels | planes | of each voxel: spheres, from a
+//   multiple of four words on, where their surfaces start, cones, polygons with their outlines, and the numbers that its
+//   objects have in the whole scene
 //
 // "at" words are distances from the node's first word. Of the surfaces there are those that its objects
 // have. Every voxel has its own copy of an object that touches it; planes are infinite, so all voxels

@@ -2,7 +2,7 @@
 #ifndef RAYA_SHARED_PORTABLE_H
 #define RAYA_SHARED_PORTABLE_H
 
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)  // the second alone: clang without a driver around it
 typedef uint raya_u32;
 typedef ulong raya_u64;
 #define RAYA_SHARED_SIZE(type, bytes)  // checked once, on the host

@@ -29,7 +29,11 @@ enum {
     RAYA_STATUS_RETURN_OUTBOX = 21, // returns in the outbox of each link; other links than the one home stay empty
     RAYA_STATUS_RETURN_INBOX = 27,  // returns left in the inbox of each link that leads here
     RAYA_STATUS_RETURN_CHARGED = 33,// returns in the outbox of the link home that are messages of their own
-    RAYA_STATUS_WORDS = 34
+    RAYA_STATUS_LEFT,           // what the step's last launch has left for the next one: packets to treat or to route,
+                                // links to look at; 1 where primary rays are still to be made
+    RAYA_STATUS_KEPT,           // packets that stay in the queue, of those that the step's launches have routed
+    RAYA_STATUS_CUT,            // 1: the device has ended loops early (kernels/shared/loop_canary.clh)
+    RAYA_STATUS_WORDS
 };
 
 // What a node did for the packet in one slot of its queue, where kernels are asked to tell (RAYA_COSTS).
@@ -74,6 +78,9 @@ RAYA_SHARED_FUNCTION raya_u32 raya_room_of_packet(raya_u32 new_packets, raya_u32
 RAYA_SHARED_FUNCTION raya_u32 raya_shortest_queue(raya_u32 lights, raya_u32 bounces) {
     return 1 + raya_room_of_ray(raya_most_new_packets(lights), bounces, 0);
 }
+
+// In place of the slot of a node that is not on the device.
+#define RAYA_NO_SLOT 0xffffffffu
 
 // The word where a box of packets of w words starts.
 RAYA_SHARED_FUNCTION raya_u64 raya_box_at(raya_u32 link, raya_u32 nodes, raya_u32 node, raya_u32 capacity, raya_u32 w) {

@@ -3,12 +3,9 @@
 // room stays in the inbox, and nothing more comes over that link until it is empty.
 //
 // One work-group is one node. The inboxes are looked through one after another, another one first in every superstep;
-// of each, L packets at a time.
+// of each, L packets at a time. After its `work` a launch begins with no other inbox, and the next one goes on
+// (`again`) with those that are left.
 #include "kernels/torus/moves.clh"
-
-#define RAYA_TAKEN 0u  // goals
-#define RAYA_LEFT_THERE 1u
-#define RAYA_NOTHING 2u
 
 // The queue of the node, while rays are put into it.
 typedef struct {
@@ -20,7 +17,7 @@ typedef struct {
 
 // Moves the rays that have room from an inbox to the queue and returns how many stay, at the inbox's front. Has
 // barriers.
-static inline uint empty_inbox(__global uint* inbox, open_queue* queue, __local uint* goals) {
+static inline uint empty_inbox(__global uint* inbox, open_queue* queue, vote_words votes) {
     __global raya_packet* const rays = rays_in(inbox);
     const uint item = get_local_id(0), waiting = inbox[0];
     uint taken = 0, left = 0;
@@ -30,15 +27,17 @@ static inline uint empty_inbox(__global uint* inbox, open_queue* queue, __local 
         const uint room = queue->tight ? 0 : raya_room_of_packet(queue->new_packets, RAYA_BOUNCES, packet.head.state);
         const int fits = queue->used + taken + item + 1 + room <= queue->capacity;
         const uint goal = slot >= waiting ? RAYA_NOTHING : fits ? RAYA_TAKEN : RAYA_LEFT_THERE;
-        goals[item] = goal;
+        vote(votes, goal);
         node_barrier();
-        const uint rank = rank_among(goals, goal);
+        const uint rank = votes_before(votes, goal);
         // What stays moves to a slot that this loop has read already.
         if (goal == RAYA_LEFT_THERE) rays[left + rank] = packet;
         packet.head.state &= ~RAYA_STATE_FRESH;
         if (goal == RAYA_TAKEN) queue->packets[queue->used + taken + rank] = packet;
-        taken += number_of(goals, RAYA_TAKEN);
-        left += number_of(goals, RAYA_LEFT_THERE);
+        taken += votes_for(votes, RAYA_TAKEN, goal);
+        left += votes_for(votes, RAYA_LEFT_THERE, goal);
+        node_barrier();
+        clear_votes(votes, RAYA_ACCEPT_GOALS);
         node_barrier();
     }
     queue->used += taken;
@@ -78,7 +77,9 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
             __global const uint* restrict ways_in,      // [link][node]: slot of the inbox of the link that leads there
             __global const uint* restrict sent,         // [link][node]: 1 where its outbox of rays has been copied
             __global const uint* restrict return_sent,  // [link][node]: ... of returns
-            __local uint* goals,                        // L + 1 words
+            const uint work,                            // of a node, batches of L packets, > 0: then the launch ends
+            const uint again,
+            __local uint* local_words,                  // RAYA_ACCEPT_WORDS
             __global raya_packet* restrict queues,      // [node][queue]
             __global uint* restrict inboxes,            // of rays (kernels/shared/traffic.h)
             __global uint* restrict return_inboxes,
@@ -94,22 +95,27 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
     __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
     __global raya_head* const homeward = root ? returns : returns_in(home_box);
     status += (size_t)slot * RAYA_STATUS_WORDS;
-    const uint before = status[RAYA_STATUS_QUEUE];
+    if (again && !status[RAYA_STATUS_LEFT]) return;
+    const uint before = status[RAYA_STATUS_QUEUE], done = again ? RAYA_LINKS - status[RAYA_STATUS_LEFT] : 0;
     open_queue queue = {queues + (size_t)slot * run->queue, before, run->queue,
                         raya_most_new_packets(header->job.lights), tight};
     // The host has taken what was there, or copied it.
-    const int gone = root || return_sent[(size_t)home * nodes + slot];
-    const uint home_before = gone ? 0 : status[RAYA_STATUS_RETURN_OUTBOX + home];
-    uint home_used = home_before;
-    __local uint* const charged = goals + RAYA_GROUP;
+    const int gone = !again && (root || return_sent[(size_t)home * nodes + slot]);
+    const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
+    const uint home_before = gone ? 0 : status[home_status];
+    uint home_used = home_before, spent = 0, i = done;
+    volatile __local uint* const charged = local_words;
+    const vote_words votes = charged + 1;
+    clear_votes(votes, RAYA_ACCEPT_GOALS);
     if (item == 0) *charged = gone ? 0 : status[RAYA_STATUS_RETURN_CHARGED];
     node_barrier();
-    for (uint i = 0; i < RAYA_LINKS; ++i) {
+    for (; i < RAYA_LINKS && spent < work; ++i) {
         const uint link = (i + turn) % RAYA_LINKS;
         const uint way = ways_in[(size_t)link * nodes + slot];
         __global uint* inbox = inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_PACKET_WORDS);
         __global uint* return_inbox = return_inboxes + raya_box_at(link, run->inboxes, way, box, RAYA_RETURN_WORDS);
-        const uint left = empty_inbox(inbox, &queue, goals);
+        spent += 1 + (inbox[0] + return_inbox[0]) / RAYA_GROUP;
+        const uint left = empty_inbox(inbox, &queue, votes);
         uint returns_left;
         home_used += pass_returns(return_inbox, homeward, home_used, root ? run->host : box, &returns_left,
                                   charged);
@@ -121,17 +127,16 @@ void accept(__global const uint* restrict memories,     // nodes' words, one aft
         status[RAYA_STATUS_RETURN_INBOX + link] = returns_left;
         if (sent[(size_t)link * nodes + slot]) status[RAYA_STATUS_OUTBOX + link] = 0;
     }
+    if (loops_were_cut(min(run->queue, 2u))) status[RAYA_STATUS_CUT] = 1;
     if (item) return;
-    if (root) {
-        status[RAYA_STATUS_HOST] = home_used;
-        ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += home_used;
-    } else {
-        status[RAYA_STATUS_RETURN_OUTBOX + home] = home_used;
-        status[RAYA_STATUS_RETURN_CHARGED] = *charged;
-    }
+    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += home_used - home_before;
+    else status[RAYA_STATUS_RETURN_CHARGED] = *charged;
+    status[home_status] = home_used;
     status[RAYA_STATUS_QUEUE] = queue.used;
     status[RAYA_STATUS_QUEUE_MAX] = max(status[RAYA_STATUS_QUEUE_MAX], queue.used);
+    status[RAYA_STATUS_LEFT] = RAYA_LINKS - i;
     // The host has looked before this kernel: what is counted from here on is for its next look.
-    status[RAYA_STATUS_PROGRESS] = queue.used - before + home_used - home_before;
+    const uint progress = again ? status[RAYA_STATUS_PROGRESS] : 0;
+    status[RAYA_STATUS_PROGRESS] = progress + queue.used - before + home_used - home_before;
     status[RAYA_STATUS_CYCLES] = status[RAYA_STATUS_CYCLES + 1] = 0;
 }

@@ -6,16 +6,18 @@
 // as the ring machine adds them (kernels/README.md, Shading).
 // Work-item i of n takes pixels i, i + n, ... One lane.
 #include "kernels/geometry/vec.clh"
+#include "kernels/shared/loop_canary.clh"
 
 #ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group, 1..64
+#define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
 #endif
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void compose(__global const float* restrict contributions,  // [contribution][4]: red, green, blue, weight
              __global const uint* restrict starts,          // [pixels + 1]: where those of each pixel start
              const uint pixels,
-             __global float* restrict image)                // [pixels][3]: linear red, green, blue
+             __global float* restrict image,                // [pixels][3]: linear red, green, blue
+             __global uint* restrict cut)                   // [1]: set where the device has ended loops early
 {
     for (uint pixel = get_global_id(0); pixel < pixels; pixel += get_global_size(0)) {
         vec sum = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));
@@ -25,4 +27,5 @@ void compose(__global const float* restrict contributions,  // [contribution][4]
         }
         vstore3((float3)(sum.x, sum.y, sum.z), pixel, image);
     }
+    if (loops_were_cut(min(pixels + 1, 2u))) *cut = 1;
 }

@@ -7,8 +7,10 @@
 //     a packet for which there is no room stays in the queue until the next superstep
 //     close the gaps that were left in the queue
 //
+// A launch ends after `work` batches of L packets, and the next one goes on (`again`) with those that are left; the gap
+// between them and the packets that stay is closed by the last.
+//
 // The rules of the ways are raya_next_link's and raya_home_link's (kernels/shared/torus.h).
-#include "kernels/shared/node_counts.h"
 #include "kernels/torus/moves.clh"
 
 // Where a packet of this node goes.
@@ -23,13 +25,25 @@ static inline uint goal_of(const node* n, const raya_head* packet) {
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }
 
+// Adds the goals of L packets to those `used` so far. Packets that had no room have voted twice: what is more than a
+// limit counts as the limit.
+static inline void count_votes(volatile __local uint* used, vote_words votes, uint goal) {
+#if RAYA_GROUP == 1
+    ++used[goal];
+#else
+    for (uint g = get_local_id(0); g < RAYA_GOALS; g += RAYA_GROUP) used[g] += votes_for(votes, g, goal);
+#endif
+}
+
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void route(__global const uint* restrict memories,   // as for trace_voxel
            __global const uint* restrict starts,
            __global const raya_run* restrict run,
            const uint first_node,
-           __local uint* local_words,                // RAYA_ROUTE_WORDS + L, then, where RAYA_WORDS_LOCAL is 1, the
-                                                     // words of a node
+           const uint work,                          // of a node, batches, > 0: then the launch ends
+           const uint again,
+           __local uint* local_words,                // RAYA_ROUTE_WORDS, then, where RAYA_WORDS_LOCAL is 1, the words
+                                                     // of a node
            __global raya_packet* restrict queues,    // [node][queue]
            __global uint* restrict outboxes,         // of rays (kernels/shared/traffic.h)
            __global uint* restrict return_outboxes,
@@ -38,39 +52,41 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
            __global ulong* restrict ended)           // [node][RAYA_KINDS], added to
 {
     const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
-    __local uint *used = local_words, *limit = used + RAYA_GOALS, *goals = limit + RAYA_GOALS;
-    __local uint *moved = goals + RAYA_GROUP, *charged = moved + 1;
+    volatile __local uint *const used = local_words, *const charged = used + RAYA_GOALS;
+    const vote_words votes = charged + 1;
+    clear_votes(votes, RAYA_GOALS);
     status += (size_t)slot * RAYA_STATUS_WORDS;
+    if (again && !status[RAYA_STATUS_LEFT]) return;
     __global raya_packet* const queue = queues + (size_t)slot * run->queue;
-    const uint count = status[RAYA_STATUS_QUEUE];
-    const node n = open_node(memories, starts, slot, local_words + RAYA_ROUTE_WORDS + RAYA_GROUP);
+    const uint count = status[RAYA_STATUS_QUEUE], start = again ? count - status[RAYA_STATUS_LEFT] : 0;
+    const uint end = work < (count - start) / RAYA_GROUP ? start + work * RAYA_GROUP : count;
+    const node n = open_node(memories, starts, slot, local_words + RAYA_ROUTE_WORDS(RAYA_GROUP));
     const int root = n.number == RAYA_ROOT;
     const uint home = raya_home_link(n.torus, n.number);
     const uint home_status = root ? RAYA_STATUS_HOST : RAYA_STATUS_RETURN_OUTBOX + home;
+    const uint home_before = status[home_status], home_limit = root ? run->host : box;
     __global uint* const home_box = return_outboxes + raya_box_at(home, nodes, slot, box, RAYA_RETURN_WORDS);
     __global raya_head* const homeward = root ? returns : returns_in(home_box);
     if (item == 0) {
-        for (uint link = 0; link < RAYA_LINKS; ++link) {
-            used[link] = status[RAYA_STATUS_OUTBOX + link];
-            limit[link] = box;
-        }
-        used[RAYA_HOME] = status[home_status];
-        limit[RAYA_HOME] = root ? run->host : box;
-        used[RAYA_STAYS] = used[RAYA_GONE] = *moved = 0;
+        for (uint link = 0; link < RAYA_LINKS; ++link) used[link] = status[RAYA_STATUS_OUTBOX + link];
+        used[RAYA_HOME] = home_before;
+        used[RAYA_STAYS] = again ? status[RAYA_STATUS_KEPT] : 0;
+        used[RAYA_GONE] = 0;
         *charged = status[RAYA_STATUS_RETURN_CHARGED];
     }
-    for (uint first = 0; first < count; first += RAYA_GROUP) {
+    node_barrier();
+    for (uint first = start; first < end; first += RAYA_GROUP) {
         const uint at = first + item;
-        const raya_packet packet = queue[min(at, count - 1)];
-        uint goal = at < count ? goal_of(&n, &packet.head) : RAYA_GONE;
-        goals[item] = goal;
+        const raya_packet packet = queue[min(at, end - 1)];
+        uint goal = at < end ? goal_of(&n, &packet.head) : RAYA_GONE;
+        vote(votes, goal);
         node_barrier();
-        const int fits = goal >= RAYA_STAYS || used[goal] + rank_among(goals, goal) < limit[goal];
+        const uint limit = goal < RAYA_HOME ? box : goal == RAYA_HOME ? home_limit : UINT_MAX;
+        if (used[goal] + votes_before(votes, goal) >= limit) goal = RAYA_STAYS;
         node_barrier();
-        if (!fits) goal = RAYA_STAYS;
-        goals[item] = goal;
+        vote(votes, goal);
         node_barrier();
-        const uint place = goal < RAYA_GONE ? used[goal] + rank_among(goals, goal) : 0;
+        const uint place = used[goal] + votes_before(votes, goal);
         // Packets that stay move to a slot that this loop has read already.
         if (goal == RAYA_STAYS) queue[place] = packet;
         if (goal == RAYA_HOME) homeward[place] = packet.head;
@@ -78,24 +94,27 @@ void route(__global const uint* restrict memories,   // as for trace_voxel
         if (goal < RAYA_LINKS)
             rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS))[place] = packet;
         node_barrier();
-        if (item == 0) {
-            for (uint g = 0; g < RAYA_GONE; ++g) {
-                const uint here = number_of(goals, g);
-                used[g] += here;
-                *moved += g < RAYA_STAYS ? here : 0;
-            }
-        }
+        count_votes(used, votes, goal);
+        node_barrier();
+        clear_votes(votes, RAYA_GOALS);
         node_barrier();
     }
+    if (loops_were_cut(min(run->queue, 2u))) status[RAYA_STATUS_CUT] = 1;
     if (item) return;
+    const uint home_used = min(used[RAYA_HOME], home_limit);
+    uint moved = home_used - home_before;
     for (uint link = 0; link < RAYA_LINKS; ++link) {
-        status[RAYA_STATUS_OUTBOX + link] = used[link];
-        outboxes[raya_box_at(link, nodes, slot, box, RAYA_PACKET_WORDS)] = used[link];
+        const uint link_used = min(used[link], box);
+        moved += link_used - status[RAYA_STATUS_OUTBOX + link];
+        status[RAYA_STATUS_OUTBOX + link] = link_used;
+        outboxes[raya_box_at(link, nodes, slot, box, RAYA_PACKET_WORDS)] = link_used;
     }
-    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += used[RAYA_HOME] - status[home_status];
-    if (!root) home_box[0] = used[RAYA_HOME];
-    status[home_status] = used[RAYA_HOME];
+    if (root) ended[(size_t)slot * RAYA_KINDS + RAYA_KIND_RETURN] += home_used - home_before;
+    if (!root) home_box[0] = home_used;
+    status[home_status] = home_used;
     status[RAYA_STATUS_RETURN_CHARGED] = root ? 0 : *charged;
-    status[RAYA_STATUS_QUEUE] = used[RAYA_STAYS];
-    status[RAYA_STATUS_PROGRESS] += *moved;
+    status[RAYA_STATUS_LEFT] = count - end;
+    status[RAYA_STATUS_KEPT] = used[RAYA_STAYS];
+    if (end == count) status[RAYA_STATUS_QUEUE] = used[RAYA_STAYS];
+    status[RAYA_STATUS_PROGRESS] += moved;
 }

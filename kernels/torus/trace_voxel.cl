@@ -17,8 +17,12 @@
 // Wide rays must be tested against all objects: they start so far away that rounding could carry a hit across
 // a voxel's side (kernels/grid/walk.clh). They visit all voxels in the order of their numbers, remember where
 // their nearest hit was found, and are shaded there.
+//
+// A node that has done its `work` takes up no more packets and ends what it has taken up. Those that are left lie in
+// the queue's first slots: launches that go on (`again`) treat them, as one launch would have.
 // Limits: packets of a node < 2^31; events of one kind, in a node and a superstep, < 2^64; where costs are told, cycles
 // for one packet in one voxel < 2^32.
+#include "kernels/shared/loop_canary.clh"
 #include "kernels/torus/outcome.clh"
 #include "kernels/torus/shade_packets.clh"
 
@@ -69,28 +73,6 @@ static inline void move_packets(flight* f, mask m, index place) {
     }
 }
 
-// What shadow rays of the lanes carry becomes a contribution to the pixel, of those that came to their lights; of
-// those that were stopped, nothing does.
-static inline void put_light(flight* f, mask m, mask arrived) {
-    lanes_index chosen;
-    lanes_vec colour;
-    chosen.truth = arrived;
-    colour = lanes_of_vec(vec_of(num_all(0.0f), num_all(0.0f), num_all(0.0f)));
-    for (uint lane = 0; lane < RAYA_LANES; ++lane) {
-        if (chosen.lane[lane]) take_vec(&colour, lane, own_slot(f, lane)->head.carries.colour);
-    }
-    const index light = f->state.all >> (index)(RAYA_STATE_LIGHT_SHIFT);
-    put_return_packets(f, m, vec_of_lanes(colour), f->weight.all, light, f->state.all & (index)(RAYA_STATE_CHARGED));
-}
-
-// Shadow rays that are done. One that its whole ray was waiting for makes a return though it was stopped.
-static inline void end_shadow_rays(flight* f, mask arrived, mask stopped) {
-    const mask returns = arrived | (stopped & has_flag(f, RAYA_STATE_CHARGED));
-    if (mask_any(returns)) put_light(f, returns, arrived);
-    count_event(f, RAYA_LIT, arrived);
-    count_event(f, RAYA_SHADOW_HITS, stopped);
-}
-
 // Treats the packets of the lanes m, all in the voxel `place` of this node or all outside the box.
 static inline void treat(const node* n, flight* f, mask m, uint place) {
     const uint before = f->appended;
@@ -107,6 +89,8 @@ static inline void treat(const node* n, flight* f, mask m, uint place) {
                    choose(m, choose(is_shadow(f), f->limit.all, num_const(RAYA_FAR)), num_all(0.0f))};
     const hit h = closest_hit(n->memory, all, r, 0);
     count_tests(f, m, all);
+    count_shared(f->shared, RAYA_COUNT_WORK, all->spheres + all->planes + all->polygons + all->cones +
+                                                 RAYA_WORK_OF_TREATING(((job_words)n->memory)->lights));
     count_shared(f->shared, RAYA_COUNT_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));
     const mask wide = m & has_flag(f, RAYA_STATE_WIDE);
@@ -158,6 +142,8 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  const uint first_node,                   // slot of the node that is work-group 0
                  const uint tight,                        // 1: rays need room for what they turn into at once, not for
                                                           // all their tree
+                 const uint work,                         // of a node, RAYA_COUNT_WORK, > 0: then the launch ends
+                 const uint again,                        // 1: goes on with what the last launch has left
                  __local uint* local_words,               // RAYA_COUNT_WORDS, then, where RAYA_WORDS_LOCAL is 1, the
                                                           // words of a node
                  __global raya_packet* restrict queues,   // [node][queue]
@@ -169,29 +155,34 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
 {
     const uint slot = node_slot(first_node), item = get_local_id(0);
     status += (size_t)slot * RAYA_STATUS_WORDS;
-    const uint count = status[RAYA_STATUS_QUEUE];
+    const uint count = status[again ? RAYA_STATUS_LEFT : RAYA_STATUS_QUEUE];
+    if (again && count == 0) return;
     flight f;
     f.queue = queues + (size_t)slot * run->queue;
     f.capacity = run->queue;
     f.tight = tight;
     f.charged = run->return_a_ray ? 0 : RAYA_STATE_CHARGED;
     f.shared = local_words;
-    open_shared(f.shared, count);
+    open_shared(f.shared, status[RAYA_STATUS_QUEUE]);
     const node n = open_node(memories, starts, slot, local_words + RAYA_COUNT_WORDS);
 #if RAYA_COSTS
     f.job = (job_words)n.memory;
     treated += (size_t)slot * run->queue;
 #endif
-    for (;;) {
+    while (shared_add(&f.shared[RAYA_COUNT_WORK], 0) < work) {
         // The packets that came last first: among them are the deepest rays, which ask for the least room.
         const uint taken = shared_add(&f.shared[RAYA_COUNT_NEXT], RAYA_LANES);
         if (taken >= count) break;
+        count_shared(f.shared, RAYA_COUNT_WORK, 1);
         const uint end = count - taken;
         treat_slots(&n, &f, end > RAYA_LANES ? end - RAYA_LANES : 0, end);
 #if RAYA_COSTS
         tell_costs(&f, end, treated);
 #endif
     }
+    if (loops_were_cut(min(f.capacity, 2u))) status[RAYA_STATUS_CUT] = 1;
     node_barrier();
-    if (item == 0) report_counts(&n, slot, f.shared, status, events, made, ended);
+    if (item) return;
+    status[RAYA_STATUS_LEFT] = count - min(count, (uint)f.shared[RAYA_COUNT_NEXT]);
+    report_counts(&n, slot, f.shared, status, events, made, ended);
 }

@@ -218,6 +218,38 @@ TEST_CASE("without timing everything else works and times are zero", "[cl]") {
     CHECK(session.profile().summary()[0].total_ns == 0);
 }
 
+TEST_CASE("transfers through pinned memory move the same bytes, however large", "[cl]") {
+    constexpr std::uint64_t kSeed = 20261123;
+    SplitMix random(kSeed);
+    Session session(choose_device(""), Timing::kOn, Transfers::kStaged);
+    constexpr std::size_t kHalf = Staging::kHalfBytes / sizeof(cl_uint);
+    Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 5 * kHalf);
+    session.fill("clear", buffer, 0);
+    std::vector<cl_uint> expected(buffer.size());
+    for (int i = 0; i < 200; ++i) {
+        // some of them a whole number of halves, or one more or less
+        const std::size_t most = i % 8 ? 1000 : 3 * kHalf,
+                          edge = i % 16 ? 0 : kHalf * (random.next() % 4) + random.next() % 3;
+        const std::size_t count = edge ? edge - 1 : random.next() % (most + 1),
+                          offset = random.next() % (buffer.size() - count + 1);
+        CAPTURE(kSeed, i, count, offset);
+        std::vector<cl_uint> words = counting(count, static_cast<cl_uint>(random.next()));
+        std::copy(words.begin(), words.end(), expected.begin() + static_cast<std::ptrdiff_t>(offset));
+        session.write("there", buffer, words, offset);
+        std::fill(words.begin(), words.end(), 0xdeadbeef);  // at once: it may be on its way still
+        std::vector<cl_uint> back(random.next() % 2 ? count : 7);
+        session.read("back", buffer, back, offset + back.size() <= buffer.size() ? offset : 0);
+        const auto from =
+            expected.begin() + static_cast<std::ptrdiff_t>(offset + back.size() <= buffer.size() ? offset : 0);
+        REQUIRE(std::equal(back.begin(), back.end(), from));
+    }
+    CHECK(contents(session, buffer) == expected);
+    std::size_t bytes = 0;
+    for (const CommandRecord& c : session.profile().commands())
+        if (c.label == "contents") bytes += c.bytes;
+    CHECK(bytes == buffer.bytes());
+}
+
 TEST_CASE("thousands of commands in one go are all recorded", "[cl]") {
     Session session(choose_device(""));
     Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 1);

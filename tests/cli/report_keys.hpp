@@ -56,6 +56,7 @@ inline std::set<std::string> fixed_keys() {
                                   "device.version string",
                                   "device.lanes count",
                                   "device.group_size count",
+                                  "device.tuned string",
                                   "device.build_options string",
                                   "rays.primary count",
                                   "rays.primary_hits count",

@@ -68,13 +68,13 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
                                "0..31; default: 8",
                                "centres|corners=centres",
                                "1, 4, 8 or 16; default",
-                               "1..64; default: 1 on a CPU",
+                               "1..1024; default: as the device was tuned, else 1 on a CPU",
                                "RAYA_DEVICE",
                                "--kernel-dir DIR"};
     Words render = of_a_render;
-    render.insert(render.end(), {"SCENE.nff", ".png (sRGB), .exr or .pfm (linear)", "modelled cycles of each pixel",
-                                 "--report FILE.json", "--profile", "--trace FILE.json[.gz]",
-                                 "--trace-events N=1000000", "--trace-pes N=16", "--quiet"});
+    render.insert(render.end(), {"SCENE.nff", ".png or .ppm (sRGB), .exr or .pfm (linear)",
+                                 "modelled cycles of each pixel", "--report FILE.json", "--profile",
+                                 "--trace FILE.json[.gz]", "--trace-events N=1000000", "--trace-pes N=16", "--quiet"});
     Words bench = of_a_render;
     bench.insert(bench.end(), {"--samples N=7", "default: 30 spheres and a plane, 512 x 512"});
     const std::vector<Row> rows = {{{"render"}, render},
@@ -101,7 +101,8 @@ TEST_CASE("devices lists each device with the lanes that raya chooses", "[cli]")
     for (const char* column : {"device", "platform", "lanes", "local KB", "div/sqrt exact", "profiling"})
         CHECK_THAT(out, Catch::Contains(column));
     CHECK(lines_that_start_with(out, "0").size() == 1);
-    CHECK_THAT(out, Catch::Contains("0: OpenCL") && Catch::Contains("--device takes a number, a type or a part of a name"));
+    CHECK_THAT(out,
+               Catch::Contains("0: OpenCL") && Catch::Contains("--device takes a number, a type or a part of a name"));
 }
 
 TEST_CASE("a render ends with a short summary", "[cli]") {

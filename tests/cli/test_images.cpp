@@ -16,13 +16,24 @@ namespace raya {
 namespace {
 
 TEST_CASE("the same render writes the same bytes", "[cli]") {
-    const std::string extension = GENERATE(".png", ".exr", ".pfm");
-    const std::string cost_extension = extension == ".png" ? ".exr" : extension;
+    const std::string extension = GENERATE(".png", ".exr", ".pfm", ".ppm");
+    const std::string cost_extension = extension == ".exr" ? ".exr" : ".pfm";
     CAPTURE(extension, cost_extension);
     const RenderFiles first("centre", {}, extension, cost_extension), second("centre", {}, extension, cost_extension);
     CHECK(file_contents(first.image()) == file_contents(second.image()));
     CHECK(file_contents(first.cost()) == file_contents(second.cost()));
     CHECK(first.report()["image"]["hash"] == second.report()["image"]["hash"]);
+}
+
+TEST_CASE("drivers are loaded before what writes pictures", "[cli]") {
+    const ScratchFolder scratch;
+    const Surroundings told{.variables = {{"LD_DEBUG", "libs"}}};
+    const Outcome run =
+        run_raya({"render", scene_file("planes"), "-o", scratch / "x.png", "--size", "4", "--pes", "1"}, told);
+    CHECK(run.code == 0);
+    const std::size_t driver = run.err.find("/libpocl"), pictures = run.err.find("raya_pictures.so");
+    CHECK(driver < pictures);
+    CHECK(pictures != std::string::npos);
 }
 
 TEST_CASE("PNG and EXR say how they were made", "[cli]") {

@@ -44,6 +44,7 @@ TEST_CASE("rings refuse the options of the torus, with reason and remedy", "[cli
                              {{"--links", "torus2d"}, {"--links torus2d" + with, remedy}},
                              {{"--inject", "root"}, {"--inject root" + with, remedy}},
                              {{"--returns", "rays"}, {"--returns rays" + with, remedy}},
+                             {{"--link-exchange", "kernel"}, {"--link-exchange kernel" + with, remedy}},
                              {{"--packet-words", "22"}, {"--packet-words 22" + with, remedy}},
                              {{"--queue", "64"}, {"--queue 64" + with, remedy}},
                              {{"--packets", "p.csv.gz"}, {"--packets p.csv.gz" + with, remedy}}});
@@ -61,6 +62,7 @@ TEST_CASE("the torus's own options are checked before anything is rendered", "[c
                                {{"--links", "mesh"}, {"--links mesh", "torus3d", "torus2d"}},
                                {{"--inject", "some"}, {"--inject some", "root or all"}},
                                {{"--returns", "some"}, {"--returns some", "terms or rays"}},
+                               {{"--link-exchange", "both"}, {"--link-exchange both", "auto, copies or kernel"}},
                                {{"--packet-words", "15"}, {"--packet-words 15", "16..4096"}},
                                {{"--packet-words", "4097"}, {"--packet-words 4097", "16..4096"}},
                                {{"--queue", "0"}, {"--queue 0", "1 packet"}},

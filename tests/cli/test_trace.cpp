@@ -96,7 +96,7 @@ TEST_CASE("a ring's trace keeps the rules and adds up to the report", "[cli]") {
     check_clocks(t.trace);
     CHECK(kernel_of(t.trace, "trace")["groups"] == 24);
     CHECK(kernel_of(t.trace, "trace")["kernel"] == "trace");
-    CHECK(kernel_of(t.trace, "trace")["arguments"].size() == 13);
+    CHECK(kernel_of(t.trace, "trace")["arguments"].size() == 16);
     const auto steps = TraceSchema(t.trace).slices_of(kTraceHost);
     for (const std::string name : {"read scene", "pack scene", "set up device", "build ring/trace.cl", "render",
                                    "trace", "gather", "write images"})

@@ -42,6 +42,18 @@ TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli
     CHECK(failures == 2);
 }
 
+TEST_CASE("a brief verify takes few rays, and those of reduced formats without the grid", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string file = scratch / "report.json";
+    const Outcome run = run_raya({"verify", "--brief", "--only", "geometry", "--report", file});
+    INFO(run.told());
+    CHECK(run.code == 0);
+    CHECK_THAT(run.out, Catch::Contains("grid, fp32") && Catch::Contains("  384 rays, ") &&
+                            Catch::Contains("  18 rays, with and without grid") && !Catch::Contains("grid, e6m15") &&
+                            Catch::Contains("  18 rays, without grid"));
+    CHECK(Document::parse(file_contents(file))["depth"] == "brief");
+}
+
 TEST_CASE("verify of nothing says what there is", "[cli][verify]") {
     const ScratchFolder scratch;
     check_refused(scratch, {"verify", "--only", "no such check", "--report", scratch / "report.json"}, 2,
@@ -79,6 +91,7 @@ TEST_CASE("verify with one width of lanes says so in its checks", "[cli][verify]
 
 TEST_CASE("verify refuses what makes no sense", "[cli][verify]") {
     CHECK(run_raya({"verify", "--quick", "--full"}).code == 2);
+    CHECK(run_raya({"verify", "--brief", "--quick"}).code == 2);
     CHECK(run_raya({"verify", "--report", "/no/such/folder/report.json"}).code == 2);
     CHECK(run_raya({"verify", "--lanes", "3"}).code == 2);
     CHECK(run_raya({"verify", "--device", "no such device"}).code == 3);

@@ -80,6 +80,18 @@ TEST_CASE("PFM stores little-endian floats, the bottom row first", "[image_io]")
     CHECK(contents(folder / "rgb.pfm").size() == 12 + 24);
 }
 
+TEST_CASE("PPM stores the codes of the PNG, the top row first", "[image_io]") {
+    const ScratchFolder folder;
+    write_image(folder / "two.ppm", Image{2, 2, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0.5f}}, {});
+    CHECK(contents(folder / "two.ppm") ==
+          std::string("P6\n2 2\n255\n\xff\x00\x00\x00\x00\xff\x00\x00\x00\xbc\xbc\xbc", 23));
+    for (const char* name : {"a.png", "a.PPM"}) write_image(folder / name, awkward_image(), kAttributes);
+    const Image png = read_image(folder / "a.png"), ppm = read_image(folder / "a.PPM");
+    CHECK(ppm.width == 5);
+    CHECK(ppm.height == 3);
+    CHECK(ppm.rgb == png.rgb);
+}
+
 TEST_CASE("row 0 is the top row of PNG and EXR", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr"}) {
@@ -154,7 +166,7 @@ TEST_CASE("attributes stand in PNG and EXR under raya:", "[image_io]") {
 
 TEST_CASE("files say nothing about when, where and by which version they were made", "[image_io]") {
     const ScratchFolder folder;
-    for (const char* name : {"a.png", "a.exr", "a.pfm"}) {
+    for (const char* name : {"a.png", "a.exr", "a.pfm", "a.ppm"}) {
         CAPTURE(name);
         write_image(folder / name, awkward_image(), kAttributes);
         const std::string first = contents(folder / name);
@@ -167,14 +179,15 @@ TEST_CASE("files say nothing about when, where and by which version they were ma
 
 TEST_CASE("an unknown extension is refused with those that are known", "[image_io]") {
     const ScratchFolder folder;
-    const auto message = Contains("use one of .png, .exr, .pfm");
+    const auto message = Contains("use one of .png, .exr, .pfm, .ppm");
     for (const char* name : {"a.jpg", "a", ".png", "a.png.gz"}) {
         CAPTURE(name);
         CHECK_THROWS_WITH(write_image(folder / name, awkward_image(), {}), Contains(name) && message);
         CHECK_THROWS_WITH(check_writable_target(folder / name, kImageExtensions), Contains(name) && message);
         CHECK_THROWS_AS(check_writable_target(folder / name, kImageExtensions), UserError);
     }
-    CHECK_THROWS_WITH(write_image(folder / "cost.png", GreyImage{1, 1, {1}}, {}), Contains("use one of .exr, .pfm"));
+    for (const char* name : {"cost.png", "cost.ppm"})
+        CHECK_THROWS_WITH(write_image(folder / name, GreyImage{1, 1, {1}}, {}), Contains("use one of .exr, .pfm"));
     CHECK(folder.entries() == 0);
 }
 

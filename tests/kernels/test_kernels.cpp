@@ -7,6 +7,7 @@
 #include "host/ring/filter.hpp"
 #include "host/ring/tracer.hpp"
 #include "host/torus/composer.hpp"
+#include "host/torus/link_exchange.hpp"
 #include "host/torus/node_kernels.hpp"
 
 namespace raya {
@@ -54,10 +55,10 @@ TEST_CASE("numbers have the names in the kernels that their descriptions give th
           std::type_identity<TakeMeansKernel>{}, std::type_identity<MarkContrastsKernel>{},
           std::type_identity<ComposeKernel>{}, std::type_identity<node_kernels::Inject>{},
           std::type_identity<node_kernels::TraceVoxel>{}, std::type_identity<node_kernels::Route>{},
-          std::type_identity<node_kernels::Accept>{});
-    WARN(named << " of 27 names are known to the driver");
-    CHECK((named == 0 || named == 27));
-    CHECK(log.steps().size() == 8);  // of the filter's two kernels, one program
+          std::type_identity<node_kernels::Accept>{}, std::type_identity<ExchangeKernel>{});
+    WARN(named << " of 41 names are known to the driver");
+    CHECK((named == 0 || named == 41));
+    CHECK(log.steps().size() == 9);  // of the filter's two kernels, one program
 }
 
 TEST_CASE("a kernel with other parameters, another name or another file is refused", "[kernels]") {
@@ -77,12 +78,14 @@ TEST_CASE("sources and more options reach every build", "[kernels]") {
                                 .more_options = {"-DRAYA_NAME=decompose"}};
     Kernels kernels(session, {.group_size = 4}, sources);
     using Renamed = DescribedKernel<"torus/compose.cl", "decompose", const Buffer<float>&, const Buffer<std::uint32_t>&,
-                                    Uint<"pixels">, Buffer<float>&>;
+                                    Uint<"pixels">, Buffer<float>&, Buffer<std::uint32_t>&>;
     CHECK_NOTHROW(kernels.get<Renamed>());
     CHECK_THAT(kernels.program(Renamed::kFile).options(),
                Catch::Contains("-DRAYA_GROUP=4") && Catch::Contains("-DRAYA_NAME=decompose"));
     const Program own = kernels.build("own.cl", "#include \"kernels/torus/compose.cl\"\n");
-    CHECK_NOTHROW(own.kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&>("decompose"));
+    CHECK_NOTHROW(
+        own.kernel<const Buffer<float>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<float>&, Buffer<std::uint32_t>&>(
+            "decompose"));
     CHECK_THROWS_AS(Kernels(session, {.lanes = 3}), UserError);
 }
 

@@ -142,33 +142,6 @@ TEST_CASE("a PE too small for its share is gathered block by block, with the sam
     CHECK(answer_of(blocks) == answer_of(whole));
 }
 
-std::size_t launches_of(const RingResult& result) {
-    std::size_t launches = 0;
-    for (const LabelSummary& commands : result.commands)
-        if (commands.label == kTracePass) launches += commands.launches;
-    return launches;
-}
-
-TEST_CASE("a long trace is cut into launches that report progress, with the same image", "[ring]") {
-    const Scene scene = project_scene("centre");
-    Session session(choose_device(""));
-    RingSettings settings = settings_of({.width = 96, .height = 96, .pes = 4});
-    RingRenderer renderer(session, scene, settings);
-    std::vector<double> reported;
-    const RingResult first = renderer.render([&](double done) { reported.push_back(done); });
-    CHECK(std::is_sorted(reported.begin(), reported.end()));
-    CHECK(reported.front() == Approx(first.lanes * first.group_size / (96 * 96 / 4.0)));  // a pixel a lane is soon done
-    CHECK(reported.back() == 1);
-    CHECK(launches_of(renderer.render()) == 1);  // nobody watches
-    settings.pixels_per_launch = 100;
-    RingRenderer sliced(session, scene, settings);
-    reported.clear();
-    const RingResult second = sliced.render([&](double done) { reported.push_back(done); });
-    CHECK(reported.size() == (96 * 96 / 4 + 99) / 100);
-    CHECK(answer_of(second) == answer_of(first));
-    CHECK(launches_of(second) == reported.size());
-}
-
 TEST_CASE("a second render of the same renderer gives the same answer", "[ring]") {
     Session session(choose_device(""));
     RingRenderer renderer(session, project_scene("cones"), settings_of({}));

@@ -60,7 +60,9 @@ class JobCheck {
         for (std::size_t i = 0; i < job.lights; ++i)
             check_light(scene_.lights[i], job.lights_at + i * RAYA_LIGHT_WORDS);
         for (std::size_t i = 0; i < job.objects.spheres; ++i)
-            check_sphere(scene_.spheres[i], job.objects.spheres_at + i * RAYA_SPHERE_WORDS);
+            check_sphere(scene_.spheres[i], job.objects.spheres_at + i * RAYA_SPHERE_WORDS,
+                         raya_sphere_surfaces_at(job.objects.spheres_at, job.objects.spheres) + i);
+        CHECK(job.objects.spheres_at % 4 == 0);
         for (std::size_t i = 0; i < job.objects.planes; ++i)
             check_plane(scene_.planes[i], job.objects.planes_at + i * RAYA_PLANE_WORDS);
         for (std::size_t i = 0; i < job.objects.cones; ++i)
@@ -73,8 +75,9 @@ class JobCheck {
     }
 
   private:
-    void check_surface(int surface, std::size_t at) {
-        CHECK(packed_.index(at + RAYA_OBJECT_SURFACE_AT) == surface_at_.at(static_cast<std::size_t>(surface)));
+    void check_surface(int surface, std::size_t at) { check_surface_word(surface, at + RAYA_OBJECT_SURFACE_AT); }
+    void check_surface_word(int surface, std::size_t at) {
+        CHECK(packed_.index(at) == surface_at_.at(static_cast<std::size_t>(surface)));
     }
 
     void check_light(const Light& light, std::size_t at) {
@@ -82,10 +85,10 @@ class JobCheck {
         CHECK(packed_.vector(at + RAYA_LIGHT_COLOUR) == fp32(light_colour(scene_, light)));
     }
 
-    void check_sphere(const Sphere& sphere, std::size_t at) {
+    void check_sphere(const Sphere& sphere, std::size_t at, std::size_t surface_at) {
         CHECK(packed_.vector(at + RAYA_SPHERE_CENTRE) == fp32(sphere.centre));
         CHECK(packed_.real(at + RAYA_SPHERE_SQUARE) == fp32(sphere.radius * std::abs(sphere.radius)));
-        check_surface(sphere.surface, at);
+        check_surface_word(sphere.surface, surface_at);
     }
 
     void check_plane(const Plane& plane, std::size_t at) {

@@ -75,7 +75,7 @@ check_fault() {  # check_fault FILE FIND REPLACE REPORT OPTION...
     grep -qF -- "$4" "$scratch/log" || fail "with '$3' in place of '$2' Oclgrind does not report '$4'"
 }
 
-check_fault ring/trace.cl "barrier(CLK_LOCAL_MEM_FENCE);" "" "data race" --pes 2
+check_fault ring/trace.cl $'barrier(CLK_LOCAL_MEM_FENCE);\n    pixel_store store;' "pixel_store store;" "data race" --pes 2
 check_fault ring/pixel_store.clh "store->totals[e].all = (wide_count)(0);" ";" "Uninitialized value" --pes 2
 check_fault ring/trace.cl "pixels + (size_t)group * capacity * 3" "pixels + (size_t)group * capacity * 4" "Invalid write" --pes 2
 [[ -z $thorough ]] || check_fault ring/filter.cl "mine = sums + (size_t)group * capacity * 3;"$'\n    const uint end = min(capacity, raya_share_size(block' \
@@ -99,8 +99,8 @@ for options in "${exchanges[@]}"; do
     check_run "${scenes[0]}" "$options" "$method --machine grande --format spa22 --pes 1"
 done
 [[ -z $thorough ]] || check_fault torus/inject.cl $'*next = end;\n        node_barrier();' "*next = end;" "data race" --machine torus --nodes 2x1x1
-[[ -z $thorough ]] || check_fault torus/route.cl $'RAYA_GONE;\n        goals[item] = goal;\n        node_barrier();' "RAYA_GONE; goals[item] = goal;" "data race" --machine torus --nodes 2x1x1
-check_fault torus/accept.cl $'goals[item] = goal;\n        node_barrier();' "goals[item] = goal;" "data race" --machine torus --nodes 2x1x1
+[[ -z $thorough ]] || check_fault torus/route.cl $'goal = RAYA_STAYS;\n        node_barrier();' "goal = RAYA_STAYS;" "data race" --machine torus --nodes 2x1x1
+check_fault torus/accept.cl $'vote(votes, goal);\n        node_barrier();' "vote(votes, goal);" "data race" --machine torus --nodes 2x1x1
 # Nodes with several work-items, rays that wait for room, both ways of making primary rays.
 size=6
 [[ -z $thorough ]] || check_run cones "--machine torus --nodes 2x2x1 --lanes 4 --group 3 --queue 200" "--machine grande"

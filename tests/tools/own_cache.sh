@@ -7,4 +7,5 @@ POCL_CACHE_DIR=${POCL_CACHE_DIR:-$PWD/pocl-cache}/$1
 export POCL_CACHE_DIR
 mkdir -p "$POCL_CACHE_DIR"  # PoCL takes no folder that is not there
 [[ ! -d ${RAYA_KERNEL_STORE-} ]] || cp -r "$RAYA_KERNEL_STORE/." "$POCL_CACHE_DIR"
+export RAYA_TUNED=off  # what a developer's devices were tuned to is no part of a test
 exec "${@:2}"

@@ -52,7 +52,7 @@ def packages_of_setup():
 
 def optional_packages():
     """What tools/portability asks for where it is missing."""
-    return set(re.findall(r"\(Debian: ([\w-]+)\)", (ROOT / "tools/portability").read_text()))
+    return set(re.findall(r"\(Debian: ([\w-]+)\)", (ROOT / "tools/portability_implementations.py").read_text()))
 
 
 def junit_of(words):

@@ -47,9 +47,13 @@ run_setup
 expect 0
 expect_silence
 
-# What single studies ask for is installed when it is asked for.
+# What single studies and tools ask for is installed when it is asked for.
 run_setup --studies
 expect 1 "neither root nor sudo" "$line libsimgrid-dev"
+run_setup --bare-root
+expect 1 "neither root nor sudo" "$line debootstrap"
+run_setup --gpu
+expect 1 "neither root nor sudo" "$line clang-15 libclc-15 intel-opencl-icd"
 
 # Two are missing, one of them removed but not purged; neither root nor sudo.
 stand_in dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }

@@ -29,6 +29,7 @@ struct TorusCase {
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};
+    LinkMove link_move = LinkMove::kMeasured;
     KernelSources sources{};
 };
 
@@ -48,6 +49,7 @@ inline TorusSettings settings_of(const TorusCase& c) {
     s.packets = c.packets;
     s.queue = c.queue;
     s.pixels = c.pixels;
+    s.link_move = c.link_move;
     s.bounces = c.bounces;
     s.format = parse_format(c.format);
     s.kernels.lanes = c.lanes;

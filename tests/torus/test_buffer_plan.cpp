@@ -31,9 +31,12 @@ NodeMemories row_of_nodes(const std::vector<std::uint32_t>& counts, const raya_t
     return pack_nodes(pack(scene), partition_of(divisions, lists), torus);
 }
 
-// Bytes of such a node: header, one voxel, a surface, and six words a sphere.
+constexpr std::uint64_t whole_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
+
+// Bytes of such a node: header, one voxel, a surface, and six words a sphere, which start and end with a row.
 constexpr std::uint64_t bytes_with(std::uint32_t spheres) {
-    return sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS + 24ull * spheres;
+    return whole_rows(whole_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
+                      24ull * spheres);
 }
 
 // Rays of 64 bytes: the queue, and a quarter of it, 1 at least, in an outbox and an inbox for each link. Returns of 32

@@ -27,10 +27,16 @@ class Boxes {
           share_(torus),
           links_(session, share_, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
           status_(nodes_),
+          device_status_(session.buffer<std::uint32_t>("status", status_.words.size())),
           out_(links_.outboxes().size(), kPoison),
           in_(out_.size()) {
         links_.clear();
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) out_[at(box)] = 0;
+    }
+
+    /// The kernel moves packets from now on.
+    void use_kernel(Kernels& kernels) {
+        links_.use_kernel(kernels.get<ExchangeKernel>(), kernels.options().group_size, device_status_);
     }
 
     /// With a chance of 1 / `rareness` for each box that has room: up to `most` packets more.
@@ -55,6 +61,7 @@ class Boxes {
             });
         const std::vector<std::uint32_t> before = in_;
         std::vector<std::uint64_t> words(std::size_t{nodes_} * RAYA_LINKS, 5), expected = words;
+        session_.write("test", device_status_, status_.words);
         session_.clear_profile();
         links_.exchange(status_, words);
         count_ways();
@@ -149,6 +156,7 @@ class Boxes {
     NodeShare share_;
     LinkExchange links_;
     NodeStatus status_;
+    Buffer<std::uint32_t> device_status_;
     std::vector<std::uint32_t> out_, in_;
     std::vector<std::uint32_t> sources_;           // of each packet: the node that put it
     std::map<std::uint32_t, int> arrived_, seen_;  // how often each did
@@ -160,6 +168,7 @@ TEST_CASE("links of random toruses carry every packet to its neighbour once", "[
     const std::uint64_t seed = 8472;
     SplitMix random(seed);
     Session session(choose_device(""));
+    Kernels alone(session, {}), groups(session, {.group_size = 4});
     std::uint64_t arrived = 0;
     for (int i = 0; i < 150; ++i) {
         const raya_torus torus = random_torus(random, 5);
@@ -167,6 +176,7 @@ TEST_CASE("links of random toruses carry every packet to its neighbour once", "[
         const bool record = i % 2;
         CAPTURE(seed, i, torus_text(torus), capacity, record);
         Boxes boxes(session, torus, capacity, i % 3 ? RAYA_PACKET_WORDS : RAYA_RETURN_WORDS);
+        if (i % 4 >= 2) boxes.use_kernel(i % 4 == 2 ? alone : groups);
         const std::uint32_t rareness = i % 5 == 0 ? 20 : 1 + random_below(random, 3);
         for (int round = 0; round < 6; ++round) {
             CAPTURE(round);

@@ -38,6 +38,20 @@ class NodeCheck {
         }
     }
 
+    // Rows, and the surfaces behind them; they start at a multiple of four words.
+    void spheres(const raya_objects& own, const Words& numbers) {
+        const raya_objects& all = header_.objects;
+        const std::uint32_t own_surfaces = raya_sphere_surfaces_at(own.spheres_at, own.spheres);
+        const std::uint32_t all_surfaces = raya_sphere_surfaces_at(all.spheres_at, all.spheres);
+        CHECK(own.spheres_at % 4 == 0);
+        for (std::uint32_t i = 0; i < numbers.size(); ++i) {
+            const Words row = node_.section(own.spheres_at + i * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS);
+            if (row != job_section(all.spheres_at + numbers[i] * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS))
+                FAIL("words of sphere " << numbers[i]);
+            surface(node_.section(own_surfaces + i, 1)[0], job_section(all_surfaces + numbers[i], 1)[0]);
+        }
+    }
+
     void surface(std::uint32_t own_at, std::uint32_t job_at) {
         const auto [entry, is_new] = surfaces_.try_emplace(job_at, own_at);
         if (entry->second != own_at) FAIL("two copies of the surface at " << job_at);
@@ -106,7 +120,7 @@ void check_voxel(NodeCheck& check, NodeReader& node, const raya_voxel_memory& vo
     CHECK((own.planes == all.planes && own.planes_at == node.header().job.objects.planes_at));
     CHECK(voxel.first_plane == all.spheres);
     CHECK(node.section(voxel.numbers_at, list.size()) == list);
-    check.objects(own.spheres_at, RAYA_SPHERE_WORDS, spheres, 0, all.spheres_at);
+    check.spheres(own, spheres);
     check.objects(own.polygons_at, RAYA_POLYGON_WORDS, polygons, polygon, all.polygons_at);
     check.objects(own.cones_at, RAYA_CONE_WORDS, cones, cone, all.cones_at);
 }
@@ -126,7 +140,9 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
         check_voxel(check, node, node.voxel(local), {first, partition.objects.begin() + partition.starts[voxel + 1]});
     }
     check.surfaces();
-    CHECK(node.words_read(1) == node.size());  // nothing else is there, and no two things are one
+    // Nothing else is there but words before rows, and no two things are one.
+    CHECK(node.words_read(1) + node.words_read(0) == node.size());
+    CHECK(node.words_read(0) <= 3 * (node.header().voxels + 1));
 }
 
 // As many as there are in the fullest node, counted from the lists.
@@ -182,14 +198,17 @@ TEST_CASE("a node has the surfaces of its own objects and of the planes alone", 
             pack_nodes(job, partition_of({2, 1, 1}, {{0, 1, 2}, {3}}), make_torus({2, 1, 1}, Links::kTorus3d));
         return std::vector<std::size_t>{memories.starts[1], memories.words.size() - memories.starts[1]};
     };
-    const std::size_t empty = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4;
-    const std::size_t sphere = RAYA_SPHERE_WORDS + 1, surface = RAYA_SURFACE_WORDS;
-    CHECK(words_of(scene) == std::vector<std::size_t>{empty + 3 * (sphere + surface), empty + sphere + surface});
+    const auto in_rows = [](std::size_t words) { return (words + 3) / 4 * 4; };
+    const auto node_of = [&](std::size_t spheres, std::size_t surfaces, std::size_t planes) {
+        const std::size_t before = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4 + surfaces * RAYA_SURFACE_WORDS +
+                                   planes * RAYA_PLANE_WORDS;
+        return in_rows(in_rows(before) + spheres * (RAYA_SPHERE_WORDS + 2));  // a surface and a number for each
+    };
+    CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 3, 0), node_of(1, 1, 0)});
     scene.spheres[2].surface = 0;
-    CHECK(words_of(scene) == std::vector<std::size_t>{empty + 3 * sphere + 2 * surface, empty + sphere + surface});
+    CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 2, 0), node_of(1, 1, 0)});
     scene.planes = {{{0, 0, 1}, 0, 4}, {{0, 1, 0}, 0, 3}};
-    CHECK(words_of(scene) == std::vector<std::size_t>{empty + 2 * RAYA_PLANE_WORDS + 3 * sphere + 4 * surface,
-                                                      empty + 2 * RAYA_PLANE_WORDS + sphere + 2 * surface});
+    CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 4, 2), node_of(1, 2, 2)});
 }
 
 TEST_CASE("nodes hold the same on a 2-D torus as on a 3-D one", "[torus]") {

@@ -1,4 +1,5 @@
 // One check: what becomes of exceptions, what is tried after them, and its text as JSON and back.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <stdexcept>
@@ -53,6 +54,24 @@ TEST_CASE("what is tried already is no remedy", "[verify]") {
     CHECK_THAT(remedies(Depth::kFull, 8, 8), Contains("--lanes 1"));
     CHECK(remedies(Depth::kQuick, 1, 1).empty());
     CHECK(remedies(Depth::kFull, 0, 1).empty());
+}
+
+TEST_CASE("what is deeper has every check that is less deep, and more", "[verify]") {
+    const auto names = [](Depth depth) { return check_names(choose_device(""), {.depth = depth, .lanes = 1}); };
+    const std::vector<std::string> brief = names(Depth::kBrief), quick = names(Depth::kQuick),
+                                   full = names(Depth::kFull);
+    const auto has = [](const std::vector<std::string>& all, const std::vector<std::string>& some) {
+        return std::all_of(some.begin(), some.end(), [&](const std::string& name) {
+            return std::find(all.begin(), all.end(), name) != all.end();
+        });
+    };
+    CHECK((has(quick, brief) && brief.size() < quick.size()));
+    CHECK((has(full, quick) && quick.size() < full.size()));
+    for (const char* layer : {"number ", "geometry ", "machine ", "image "}) {
+        CAPTURE(layer);
+        CHECK(
+            std::any_of(brief.begin(), brief.end(), [&](const std::string& name) { return name.starts_with(layer); }));
+    }
 }
 
 TEST_CASE("checks come back from their JSON", "[verify]") {

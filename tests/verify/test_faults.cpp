@@ -105,7 +105,7 @@ TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify
         {kDivisionFault, "image ties fp32: blocks on 5, global words, division refined", {}},
         {kDivisionFault,
          "image glass fp32: cyclic:8 on 7",
-         {"glass fp32: cyclic:8 on 7, block fold, 9 pixels a launch"}},
+         {"glass fp32: cyclic:8 on 7, block fold, launches of 40 tests"}},
         {kTieFault, "image ties", {"ties fp32: blocks on 5, global words, division refined"}},
         {kWalkFault, "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
         {kWalkFault, "image polygons fp32: torus3d 2x2x2", {"polygons fp32: torus3d 2x2x2"}}};

@@ -1,4 +1,4 @@
-#include "host/verify/own_process.hpp"
+#include "host/files/own_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -92,6 +92,17 @@ OwnProcess::Read OwnProcess::read(std::string& line, std::chrono::milliseconds w
 int OwnProcess::wait() {
     while (!ended_) ended_ = ::waitpid(child_, &status_, 0) == child_ || errno != EINTR;
     return status_;
+}
+
+void keep_lines_to_oneself(int lines) { ::fcntl(lines, F_SETFD, FD_CLOEXEC); }
+
+void send_line(int lines, std::string_view line) {
+    const std::string text = std::string(line) + "\n";
+    for (std::size_t sent = 0; sent < text.size();) {
+        const ssize_t count = ::write(lines, text.data() + sent, text.size() - sent);
+        if (count < 0 && errno != EINTR) return;
+        if (count > 0) sent += static_cast<std::size_t>(count);
+    }
 }
 
 }  // namespace raya

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace raya {
@@ -39,5 +40,12 @@ class OwnProcess {
     bool ended_ = false;  // and waited for
     std::string text_;    // read and not yet given
 };
+
+/// In the child, before anything else: its lines go into the pipe `lines`, which programs that it starts, such as a
+/// driver's compiler, do not get.
+void keep_lines_to_oneself(int lines);
+
+/// In the child: writes a line into the pipe. A line that nobody reads is lost.
+void send_line(int lines, std::string_view line);
 
 }  // namespace raya

@@ -1,0 +1,41 @@
+#include "host/kernels/tuned.hpp"
+
+namespace raya {
+namespace {
+
+TunedSource& source_in_use() {
+    static TunedSource source;
+    return source;
+}
+
+}  // namespace
+
+TunedValues default_values(const DeviceInfo& device) {
+    return {.lanes = default_lanes(device), .group = default_group_size(device)};
+}
+
+KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {
+    kernels.lanes = values.lanes;
+    kernels.group_size = values.group;
+    kernels.local_words = kernels.local_words && values.local_words != 0;
+    kernels.more = {values.batch, values.trees, values.beams, values.registers};
+    return kernels;
+}
+
+TunedUse::TunedUse(TunedSource source) : before_(std::move(source_in_use())) { source_in_use() = std::move(source); }
+TunedUse::~TunedUse() { source_in_use() = std::move(before_); }
+
+KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what) {
+    if (kernels.lanes == 0 && kernels.group_size == 0) {
+        const auto tuned = source_in_use() ? source_in_use()(device, what) : std::nullopt;
+        kernels = with_values(kernels, tuned ? tuned->values : default_values(device));
+        kernels.origin = tuned ? tuned->origin : "defaults";
+        return kernels;
+    }
+    if (!kernels.lanes) kernels.lanes = default_lanes(device);
+    if (!kernels.group_size) kernels.group_size = default_group_size(device);
+    kernels.origin = "options";
+    return kernels;
+}
+
+}  // namespace raya

@@ -1,0 +1,185 @@
+#include "host/tune/store.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <map>
+
+#include "host/error.hpp"
+#include "host/files/json.hpp"
+#include "host/files/read_file.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/tune/values_json.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kKind = "raya bench --tune";
+constexpr std::uint64_t kVersion = 1;                                        // of the file's form
+constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // by RAYA_ACCEL_*
+
+Json to_json(const TunedEntry& entry) {
+    return {{"machine", entry.what.torus ? "torus" : "ring"},
+            {"accel", kAccelNames.at(entry.what.accel)},
+            {"format", entry.what.fp32 ? "fp32" : "reduced"},
+            {"values", to_json(entry.values)},
+            {"speedup", entry.speedup},
+            {"scene", entry.scene}};
+}
+
+// Which of two or more words a member is.
+std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& words) {
+    const auto found = std::find(words.begin(), words.end(), json.at(key).text());
+    if (found == words.end()) throw JsonError(fmt::format("{} \"{}\"", key, json.at(key).text()));
+    return static_cast<std::uint32_t>(found - words.begin());
+}
+
+TunedEntry entry_of(const Json& json, const DeviceInfo& device) {
+    TunedEntry entry{.what = {.torus = choice_of(json, "machine", {"ring", "torus"}) == 1,
+                              .accel = choice_of(json, "accel", {kAccelNames.begin(), kAccelNames.end()}),
+                              .fp32 = choice_of(json, "format", {"fp32", "reduced"}) == 0},
+                     .values = values_of(json.at("values")),
+                     .speedup = json.at("speedup").number(),
+                     .scene = json.at("scene").text()};
+    const KernelChoice kernels = with_values({}, entry.values);
+    check_kernel_options({.lanes = kernels.lanes, .group_size = kernels.group_size, .more = kernels.more}, device);
+    return entry;
+}
+
+Json device_json(const DeviceInfo& device) {
+    return {
+        {"name", device.name}, {"platform", device.platform}, {"version", device.version}, {"driver", device.driver}};
+}
+
+void check_is_of(const Json& json, const DeviceInfo& device) {
+    if (!json.find("kind") || json.at("kind").text() != kKind) throw UserError(fmt::format("no file of {}", kKind));
+    const auto check = [](const std::string& is, const std::string& must, const char* what) {
+        if (is != must) throw UserError(fmt::format("of another {}: {}, not {}", what, is, must));
+    };
+    check(std::to_string(json.at("version").whole()), std::to_string(kVersion), "form");
+    check(json.at("raya").text(), RAYA_VERSION, "version of raya");
+    const Json now = device_json(device), &then = json.at("device");
+    for (const std::string& key : now.keys())
+        check(then.at(key).text(), now.at(key).text(), ("device's " + key).c_str());
+}
+
+constexpr std::uint64_t kMostBytes = 1 << 20;
+
+std::optional<TunedFile> read_kept(const fs::path& path, const DeviceInfo& device) {
+    std::error_code none;
+    if (!fs::exists(path, none)) return {};
+    try {
+        return read_tuned(read_file(path, Pipes::kRefused, kMostBytes), device);
+    } catch (const UnreadableFile& error) {
+        throw UserError(error.what());
+    }
+}
+
+// Of a name what file systems take.
+std::string plain(const std::string& name) {
+    std::string text;
+    for (const char c : name) {
+        const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
+        if (plain || (!text.empty() && text.back() != '-')) text += plain ? c : '-';
+    }
+    constexpr std::size_t kMost = 80;
+    return text.substr(0, kMost);
+}
+
+// A folder that a variable names; the specification of XDG_CACHE_HOME has relative ones ignored.
+std::optional<fs::path> folder_in(const char* variable) {
+    const char* text = std::getenv(variable);
+    if (text == nullptr || !fs::path(text).is_absolute()) return {};
+    return fs::path(text);
+}
+
+}  // namespace
+
+std::optional<fs::path> tuned_folder() {
+    if (const auto cache = folder_in("XDG_CACHE_HOME")) return *cache / "raya";
+    if (const auto home = folder_in("HOME")) return *home / ".cache" / "raya";
+    return {};
+}
+
+std::string tuned_file_name(const DeviceInfo& device) {
+    return fmt::format("tuned-{}-{}-{}.json", plain(device.platform), plain(device.name), plain(device.driver));
+}
+
+std::string tuned_text(const DeviceInfo& device, const TunedFile& file) {
+    Json entries = Json::list();
+    for (const TunedEntry& entry : file.entries) entries.push_back(to_json(entry));
+    return Json{{"kind", kKind},     {"version", kVersion},           {"raya", RAYA_VERSION},
+                {"date", file.date}, {"device", device_json(device)}, {"tuned", entries}}
+               .dump(2) +
+           "\n";
+}
+
+TunedFile read_tuned(const std::string& text, const DeviceInfo& device) {
+    try {
+        const Json json = Json::parse(text);
+        check_is_of(json, device);
+        TunedFile file{.date = json.at("date").text(), .entries = {}};
+        for (const Json& entry : json.at("tuned").elements()) file.entries.push_back(entry_of(entry, device));
+        return file;
+    } catch (const JsonSyntaxError& error) {
+        throw UserError(fmt::format("damaged: byte {} cannot stand there", error.byte));
+    } catch (const JsonError& error) {
+        throw UserError(fmt::format("damaged: {}", error.what()));
+    }
+}
+
+fs::path tuned_place(const DeviceInfo& device) {
+    const auto folder = tuned_folder();
+    if (!folder) throw UserError("no folder for what was tuned: neither XDG_CACHE_HOME nor HOME names one; set either");
+    std::error_code error;
+    fs::create_directories(*folder, error);
+    if (error)
+        throw UserError(fmt::format("{}: cannot make the folder: {}; set XDG_CACHE_HOME to another place",
+                                    folder->string(), error.message()));
+    fs::path path = *folder / tuned_file_name(device);
+    check_writable(path);
+    return path;
+}
+
+void keep_tuned(const DeviceInfo& device, const TunedFile& now) {
+    const fs::path path = tuned_place(device);
+    TunedFile all = now;
+    try {
+        if (const auto kept = read_kept(path, device))
+            for (const TunedEntry& entry : kept->entries)
+                if (std::none_of(now.entries.begin(), now.entries.end(),
+                                 [&](const TunedEntry& one) { return one.what == entry.what; }))
+                    all.entries.push_back(entry);
+    } catch (const UserError&) {  // what cannot be used is not kept
+    }
+    write_whole_file(path, tuned_text(device, all));
+}
+
+TunedSource kept_choices(std::function<void(const std::string&)> warn) {
+    const char* wanted = std::getenv("RAYA_TUNED");
+    const auto folder = tuned_folder();
+    if (!folder || (wanted != nullptr && std::string(wanted) == "off")) return {};
+    return [folder = *folder, warn = std::move(warn), read = std::map<std::string, std::optional<TunedFile>>()](
+               const DeviceInfo& device, const TunedFor& what) mutable -> std::optional<TunedChoice> {
+        const fs::path path = folder / tuned_file_name(device);
+        const auto [at, first] = read.try_emplace(path.string());
+        try {
+            if (first) at->second = read_kept(path, device);
+        } catch (const UserError& error) {
+            warn(fmt::format("{}: {}; it is ignored, remedy: raya bench --tune writes it anew", path.string(),
+                             error.what()));
+        }
+        if (!at->second) return {};
+        for (const TunedEntry& entry : at->second->entries)
+            if (entry.what == what)
+                return TunedChoice{entry.values, fmt::format("{}, {}", path.string(), at->second->date)};
+        return {};
+    };
+}
+
+}  // namespace raya

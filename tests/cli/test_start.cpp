@@ -1,0 +1,66 @@
+// What a start loads: libraries are counted as the dynamic loader tells them, not timed.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <regex>
+#include <set>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/files/scratch_folder.hpp"
+
+namespace raya {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// File names of all libraries that raya and the processes that it starts load, as LD_DEBUG of ld.so(8) tells them.
+Names libraries_of(const std::vector<std::string>& arguments) {
+    const ScratchFolder told;
+    const Outcome run =
+        run_raya(arguments, {.variables = {{"LD_DEBUG", "files"}, {"LD_DEBUG_OUTPUT", told / "process"}}});
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    Names names;
+    const std::regex initialised("calling init: .*/([^/\n]+)");
+    for (const auto& process : std::filesystem::directory_iterator(told.path())) {
+        const std::string text = file_contents(process.path());
+        for (std::sregex_iterator at(text.begin(), text.end(), initialised), end; at != end; ++at)
+            names.insert((*at)[1]);
+    }
+    return names;
+}
+
+/// Those whose name has one of the parts in it.
+Names with(const Names& names, const std::vector<std::string>& parts) {
+    Names found;
+    std::copy_if(names.begin(), names.end(), std::inserter(found, found.end()), [&](const std::string& name) {
+        return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) { return contains(name, part); });
+    });
+    return found;
+}
+
+std::vector<std::string> small_render(const std::string& image) {
+    return {"render", scene_file("planes"), "-o", image, "--size", "4", "--pes", "4", "--lanes", "4"};
+}
+
+TEST_CASE("a start loads the OpenCL loader, three small libraries, those of C and C++, and no other", "[cli]") {
+    Names names = libraries_of({"--version"});
+    for (const std::string& sanitizer : with(names, {"libasan", "libubsan"})) names.erase(sanitizer);
+    CHECK(names.size() <= 9);
+    const std::vector<std::string> known = {"libOpenCL.", "libfmt.", "libxxhash.", "libz.",       "libstdc++.", "libm.",
+                                            "libgcc_s.",  "libc.",   "libdl.",     "libpthread.", "ld-linux"};
+    CHECK(with(names, known) == names);
+}
+
+TEST_CASE("devices and renders to PFM and PPM load neither OpenImageIO nor TBB nor MPI; a render to PNG does",
+          "[cli]") {
+    const ScratchFolder outputs;
+    const std::vector<std::string> heavy = {"raya_", "OpenImageIO", "libtbb", "libmpi", "libopen-"};  // of Open MPI
+    CHECK(with(libraries_of({"devices"}), heavy).empty());
+    for (const char* image : {"x.pfm", "x.ppm"})
+        CHECK(with(libraries_of(small_render(outputs / image)), heavy).empty());
+    CHECK(with(libraries_of(small_render(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,122 @@
+// kernel_builds TO [GROUP [KERNELS]]: writes to the folder TO the source of every kernel file, as a GPU's driver is
+// given it, and builds.json: with which options, as host/kernels makes them. For tools/gpu_check, which has no device.
+// GROUP: work-items of a group, 0 for what raya takes on a GPU; KERNELS: a folder like kernels/.
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/files/json.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/kernels/kernel_options.hpp"
+#include "kernels/shared/bvh.h"
+
+namespace raya {
+namespace {
+
+struct Build {
+    std::string file, variant;
+    KernelOptions options;
+};
+
+// What GPUs of today say of themselves.
+DeviceInfo a_gpu() {
+    DeviceInfo device;
+    device.name = "a GPU";
+    device.type = "gpu";
+    device.max_group_size = 1024;
+    device.native_float_width = 1;
+    device.correctly_rounded_divide_sqrt = device.fused_multiply_add = true;
+    return device;
+}
+
+const std::vector<std::pair<std::string, std::uint32_t>> kWalks = {{" grid", RAYA_ACCEL_GRID},
+                                                                   {" bvh", RAYA_ACCEL_BVH}};
+constexpr std::uint32_t kDepth = 5;  // of a tree of 16^5 objects
+
+KernelOptions with_walk(KernelOptions options, std::uint32_t accel) {
+    options.words_local = false;  // a scene that is worth one seldom fits
+    options.accel = accel;
+    options.stack = accel == RAYA_ACCEL_BVH ? (RAYA_BVH_WIDTH - 1) * kDepth : 0;
+    return options;
+}
+
+// Kernels that compute in `all.format`, in what else changes their code: the walk, kinds of objects, what the device's
+// arithmetic lacks.
+std::vector<Build> builds_in(const std::string& format, const KernelOptions& all) {
+    KernelOptions spheres = all, check = all;
+    spheres.polygons = spheres.patches = spheres.cones = false;
+    check.group_size = 1;
+    check.words_local = false;
+    KernelOptions refined = check;
+    refined.exact_divide = refined.exact_fma = false;
+    std::vector<Build> builds = {
+        {"ring/trace.cl", format, all},       {"ring/trace.cl", format + " spheres", spheres},
+        {"ring/filter.cl", format, all},      {"ring/contrast.cl", format, all},
+        {"torus/inject.cl", format, all},     {"torus/trace_voxel.cl", format, all},
+        {"torus/compose.cl", format, check},  {"number/operations.cl", format, all},
+        {"checks/numbers.cl", format, check}, {"checks/numbers.cl", format + " refined", refined},
+    };
+    for (const auto& [walk, accel] : kWalks) {
+        builds.push_back({"ring/trace.cl", format + walk, with_walk(all, accel)});
+        builds.push_back({"checks/hits.cl", format + walk, with_walk(check, accel)});
+    }
+    return builds;
+}
+
+std::vector<Build> all_builds(std::uint32_t group) {
+    KernelOptions options;
+    options.lanes = default_lanes(a_gpu());
+    options.group_size = group ? group : default_group_size(a_gpu());
+    std::vector<Build> all;
+    for (const char* moves :
+         {"torus/route.cl", "torus/accept.cl", "torus/exchange.cl", "checks/machine.cl"})  // and computes nothing
+        all.push_back({moves, "any", options});
+    for (const NumberFormat& format : {NumberFormat{}, NumberFormat{6, 15, false}}) {
+        options.format = format;
+        options.filter = filters_hold(format, 1);
+        for (Build& build : builds_in(format_name(format), options)) all.push_back(std::move(build));
+    }
+    options.costs = true;
+    all.push_back({"torus/trace_voxel.cl", format_name(options.format) + " costs", options});
+    return all;
+}
+
+void write(const std::filesystem::path& to, std::uint32_t group, const KernelSources& sources) {
+    std::filesystem::create_directories(to);
+    Json list = Json::list();
+    for (const Build& build : all_builds(group)) {
+        std::string name = fmt::format("{} {}.cl", build.file.substr(0, build.file.size() - 3), build.variant);
+        for (char& letter : name)
+            if (letter == '/' || letter == ' ') letter = '_';
+        write_whole_file(to / name, kernel_source(build.file, sources));
+        list.push_back({{"source", name},
+                        {"file", build.file},
+                        {"variant", build.variant},
+                        {"group", build.options.group_size},
+                        {"options", build_options(build.options, a_gpu())}});
+    }
+    write_whole_file(to / "builds.json", list.dump(1));
+}
+
+}  // namespace
+}  // namespace raya
+
+int main(int argc, char** argv) {
+    if (argc < 2 || argc > 4) {
+        std::fputs("usage: kernel_builds TO [GROUP [KERNELS]]\n", stderr);
+        return 2;
+    }
+    try {
+        const auto group = static_cast<std::uint32_t>(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 0);
+        raya::write(argv[1], group, {.folder = argc > 3 ? argv[3] : ""});
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "kernel_builds: %s\n", error.what());
+        return 2;
+    }
+}

@@ -1,0 +1,153 @@
+// Launches of trace end by themselves after a bounded amount of work, keep their trees, and the next ones go on.
+#include <catch2/catch.hpp>
+
+#include "host/error.hpp"
+#include "host/machine/accel.hpp"
+#include "tests/ring/render_scene.hpp"
+#include "tests/scene/random_below.hpp"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+struct Answer {
+    std::string hash;
+    EventCounts events;
+    std::vector<std::uint64_t> loads, costs;
+    bool operator==(const Answer&) const = default;
+};
+
+Answer answer_of(const RingResult& r) {
+    return {pixel_hash(r.image), r.all.events, r.all.load.per_pe, r.cost().cycles};
+}
+
+std::size_t launches_of(const RingResult& result) {
+    std::size_t launches = 0;
+    for (const LabelSummary& commands : result.commands)
+        if (commands.kind == "kernel" && (commands.label == kTracePass || commands.label == kSupersamplePass))
+            launches += commands.launches;
+    return launches;
+}
+
+RingSettings random_settings(SplitMix& random, const AccelKind accel) {
+    RingCase c;
+    c.width = 4 + random_below(random, 30);
+    c.height = 3 + random_below(random, 25);
+    c.pes = 1 + random_below(random, 20);
+    c.offset = random_below(random, c.width);
+    c.bounces = accel == AccelKind::kNone ? 5 : 8;
+    c.keep_costs = true;
+    c.lanes = random_below(random, 2) ? 4 : 16;  // few builds
+    c.group = random_below(random, 2) ? 1 : 3;
+    c.format = random_below(random, 2) ? "fp32" : "spa22";
+    if (random_below(random, 2)) c.antialias.method = AntialiasMethod::kSupersample;
+    RingSettings settings = settings_of(c);
+    settings.accel.kind = accel;
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("however little a launch may do, image, counts and costs are the same", "[ring]") {
+    const auto accel = GENERATE(AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh);
+    const Scene scene = project_scene("centre");
+    Session session(choose_device(""));
+    const std::uint64_t seed = 20261122;
+    SplitMix random(seed);
+    const unsigned cases = quick_cases(40, 200);
+    unsigned more = 0;  // that took several launches
+    for (unsigned i = 0; i < cases; ++i) {
+        RingSettings settings = random_settings(random, accel);
+        CAPTURE(accel, seed, i, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
+                settings.kernels.lanes, settings.kernels.group_size, settings.format.fraction_bits);
+        const RingResult whole = RingRenderer(session, scene, settings).render();
+        settings.work_per_launch = 1 + random_below(random, i % 4 ? 2000 : 60);
+        const RingResult cut = RingRenderer(session, scene, settings).render();
+        CAPTURE(settings.work_per_launch);
+        more += launches_of(cut) > launches_of(whole);
+        CHECK(answer_of(cut) == answer_of(whole));
+    }
+    CHECK(2 * more > cases);
+}
+
+TEST_CASE("a launch may do a turn of its loop and no more, and still all comes to its end", "[ring]") {
+    const Scene scene = project_scene("glass");
+    Session session(choose_device(""));
+    RingSettings settings = settings_of({.width = 12, .height = 9, .pes = 3, .group = 1});
+    settings.keep_costs = true;
+    const RingResult whole = RingRenderer(session, scene, settings).render();
+    settings.work_per_launch = 1;
+    const RingResult cut = RingRenderer(session, scene, settings).render();
+    CHECK(answer_of(cut) == answer_of(whole));
+    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one for the pixels of a lane
+}
+
+TEST_CASE("launches report progress, which never goes back, as soon as a pixel a lane is done", "[ring]") {
+    const Scene scene = project_scene("centre");
+    Session session(choose_device(""));
+    RingSettings settings = settings_of({.width = 96, .height = 96, .pes = 4});
+    settings.keep_costs = true;
+    RingRenderer renderer(session, scene, settings);
+    std::vector<double> reported;
+    const auto report = [&](double done) { reported.push_back(done); };
+    const RingResult first = renderer.render(report);
+    CHECK(std::is_sorted(reported.begin(), reported.end()));
+    CHECK(reported.size() > 1);
+    CHECK(reported.front() < 6 * first.lanes * first.group_size / (96 * 96 / 4.0));
+    CHECK(reported.back() == 1);
+    CHECK(launches_of(renderer.render()) == 1);  // nobody watches, and it takes less than a second
+    settings.work_per_launch = 5000;
+    RingRenderer sliced(session, scene, settings);
+    reported.clear();
+    const RingResult second = sliced.render(report);
+    CHECK(std::is_sorted(reported.begin(), reported.end()));
+    CHECK(reported.back() == 1);
+    CHECK(answer_of(second) == answer_of(first));
+    CHECK(launches_of(second) == reported.size());
+    CHECK(reported.size() > 4);
+}
+
+bool is_seen(Session& session, const Scene& scene, const RingSettings& settings, const Answer& right) {
+    try {
+        return !(answer_of(RingRenderer(session, scene, settings).render()) == right);
+    } catch (const DeviceError&) {  // pixels are counted
+        return true;
+    }
+}
+
+// What the state's faults would look like, and a device that ends loops in silence.
+TEST_CASE("faults in what launches keep are seen", "[ring]") {
+    const SourcePatch faults[] = {
+        {"ring/kept_trees.clh", "    keep_index(k, &t->level);\n", ""},
+        {"ring/kept_trees.clh", "    keep_vec(k, &sum);\n", ""},
+        {"ring/kept_trees.clh", "if (mask_any((t->waits.all & (index)(1u << level)) != (index)(0)))",
+         "if (level == 0)"},
+        {"ring/kept_trees.clh", "keep_index(k, &t->events[e].all)", ""},
+        {"ring/kept_trees.clh", "    keep_vec(k, &p->colour);\n", ""},
+        {"ring/trace.cl", "const int goes_on = progress[group].left > 0;", "const int goes_on = 0;"},
+        {"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"},
+    };
+    const Scene scene = project_scene("glass");
+    Session session(choose_device(""));
+    RingCase c{.width = 20, .height = 15, .pes = 4, .group = 1, .keep_costs = true};
+    c.antialias.method = AntialiasMethod::kSupersample;
+    RingSettings settings = settings_of(c);
+    settings.work_per_launch = 300;
+    const Answer right = answer_of(RingRenderer(session, scene, settings).render());
+    for (const SourcePatch& fault : faults) {
+        CAPTURE(fault.file, fault.find);
+        settings.kernels.sources.patches = {fault};
+        CHECK(is_seen(session, scene, settings, right));
+    }
+}
+
+TEST_CASE("a device that ends loops early is an error, not an image", "[ring]") {
+    const Scene scene = project_scene("glass");
+    Session session(choose_device(""));
+    RingSettings settings = settings_of({.width = 20, .height = 15, .pes = 4});
+    settings.kernels.sources.patches = {{"shared/loop_canary.clh", "i < two", "i < two - 1"}};
+    CHECK_THROWS_WITH(RingRenderer(session, scene, settings).render(),
+                      Catch::Contains("has ended loops of") && Catch::Contains("remedy"));
+}
+
+}  // namespace raya

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# tools/bundle: what it packs runs without what raya is built with, and what it must not pack is refused.
+#   test_bundle.sh BUILD     the build folder, with the target `bundled` built
+set -euo pipefail
+build=$(readlink -f "$1")
+root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
+bundle() { code=0; out=$("$root/tools/bundle" "$@" 2>&1) || code=$?; }
+expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"; }  # expect CODE TEXT
+
+bundle --build "$build" -o "$scratch/one.tar.gz"
+expect 0 "one.tar.gz: "
+bundle --build "$build" -o "$scratch/two.tar.gz"
+cmp "$scratch"/{one,two}.tar.gz || fail "the same programs make another tarball"
+(($(stat -c %s "$scratch/one.tar.gz") < 20000000)) || fail "20 MB or more"
+glibc=$(grep -oE 'glibc [0-9.]+' <<<"$out")
+[[ $(printf '%s\n' "$glibc" "glibc 2.34" | sort -V | head -n 1) == "$glibc" ]] || fail "needs $glibc, newer than RHEL 9's"
+
+# Unpacked elsewhere, with an environment that is empty but for what a driver needs. LD_DEBUG tells what is loaded.
+mkdir "$scratch/away" "$scratch/home"
+tar -xzf "$scratch/one.tar.gz" -C "$scratch/away"
+top=$(echo "$scratch"/away/raya-*)
+! grep -rqF "$root" "$top" || fail "the folder of the sources stands in: $(grep -rlF "$root" "$top")"
+grep -q "$glibc or newer" "$top/README.md" || fail "README.md has another glibc than $glibc"
+away() {  # away COMMAND...: sets code, out and loaded
+    rm -f "$scratch"/loaded.*
+    code=0
+    out=$(cd "$scratch/home" && env -i HOME="$scratch/home" PATH=/usr/bin:/bin POCL_CACHE_DIR="$POCL_CACHE_DIR" LD_DEBUG=files \
+        LD_DEBUG_OUTPUT="$scratch/loaded" "$@" 2>&1) || code=$?
+    loaded=$(sed -n 's/.*calling init: //p' "$scratch"/loaded.* | sort -u)
+}
+away "$top/raya" --version
+expect 0 "raya "
+others=$(grep -vE "^($top/lib/libOpenCL\.so\.1|.*/(libc|libm|ld-linux-x86-64)\.so\.[0-9]+)$" <<<"$loaded" || true)
+[[ -z $others ]] || fail "a start loads $others"
+grep -qF "$top/lib/libOpenCL.so.1" <<<"$loaded" || fail "not its own loader of OpenCL: $loaded"
+away "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.ppm"
+expect 0 "(474a384374e81c5144a0e5405232a750)"
+loaded=$(grep -vF "$POCL_CACHE_DIR/" <<<"$loaded")  # kernels
+! grep -E "$root|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads that"
+[[ $(head -c 15 "$scratch/home/centre.ppm") == $'P6\n256 256\n255' ]] || fail "no PPM"
+away "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.png"
+expect 2 "raya_pictures.so lies neither beside the program nor in"
+away "$top/gpu_day" --out "$scratch/day"
+expect 0 "| 5 | large pictures"
+
+# Two ranks, where there is a launcher of the MPI that the module is for; then a failure of one, which passes through the module.
+if [[ -e $top/raya_mpi.so ]] && ldd "$top/raya_mpi.so" | grep -q 'libmpi.* => /' && mpirun=$(command -v mpirun); then
+    launch=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "$mpirun" -n 2 "$top/raya" render)
+    away "${launch[@]}" "$top/scenes/centre.nff" -o "$scratch/home/ranks.ppm"
+    expect 0 "ranks   2 on 1 host"
+    cmp "$scratch"/home/{centre,ranks}.ppm || fail "two ranks make another picture"
+    away "${launch[@]}" "$top/scenes/centre.nff" -o "$scratch/home/ranks.ppm" --device "no such device"
+    expect 3 "no OpenCL device matches"
+fi
+
+# Wrong use, and a build that cannot be packed: nothing is written.
+mkdir -p "$scratch/build/alone"
+bundle --nonsense
+expect 2 "unknown option"
+bundle --build "$build" -o "$scratch/none/x.tar.gz"
+expect 2 "does not exist"
+bundle --build "$scratch/build" -o "$scratch/x.tar.gz"
+expect 3 "no $scratch/build/alone/raya"
+ln -s "$build/raya" "$scratch/build/alone"
+bundle --build "$scratch/build" -o "$scratch/x.tar.gz"
+expect 4 "needs libfmt.so"
+[[ ! -e $scratch/x.tar.gz ]] || fail "a tarball was written all the same"
+[[ -z $(find "$scratch" -mindepth 1 -name 'tmp.*') ]] || fail "files in progress were left"
+echo "tools/bundle: as expected, for $glibc"

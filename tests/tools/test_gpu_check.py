@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""tools/gpu_check with faults planted: in kernels, in the budget, in what compilers say; and without compilers. Few kernels, some seconds.
+  test_gpu_check.py BUILD     the build folder: kernel_builds and patch_kernels
+77 where no compiler for GPUs is here, once what needs none is done."""
+import csv, json, os, pathlib, subprocess, sys, tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(sys.argv[1]).resolve()
+SCRATCH = pathlib.Path(tempfile.mkdtemp())
+sys.path.insert(0, str(ROOT / "tools"))
+from gpu import amd, intel, nvidia  # noqa: E402
+from gpu.budget import HEAD, Budget  # noqa: E402
+from gpu.figures import Figures  # noqa: E402
+
+
+def expect(truth, *told):
+    if not truth:
+        sys.exit(f"FAILED line {sys._getframe(1).f_lineno}: {' '.join(map(str, told))}")
+
+
+def check(*options, code=0, path=None, texts=()):
+    """Runs the tool, expects its exit code and texts; returns what it wrote as JSON."""
+    told = SCRATCH / "told.json"
+    told.unlink(missing_ok=True)
+    done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, "--json", told, *map(str, options)], text=True, capture_output=True,
+                          env={**os.environ, **({"PATH": str(path)} if path else {})})
+    said = done.stdout + done.stderr
+    if done.returncode != code or not all(text in said for text in texts):
+        sys.exit(f"FAILED line {sys._getframe(1).f_lineno}: exit code {done.returncode}, not {code}, or not all of {texts} in:\n{said}")
+    return json.loads(told.read_text()) if told.exists() else None
+
+
+def patched(file, *changes):
+    """A copy of the kernels with (find, replace) in one of them."""
+    folder = SCRATCH / f"kernels{len(list(SCRATCH.iterdir()))}"
+    subprocess.run([BUILD / "tests" / "patch_kernels", folder, *[word for change in changes for word in (file, *change)]], check=True)
+    return folder
+
+
+# Warps that fit, as the vendors' own calculators have them: CUDA's occupancy, and "Occupancy" in what clang says of AMD's code.
+def warps(core, width, group, by_registers, local=0):
+    return core.fit(Figures("k", "v", "t", width, group, 0, 0, 0, local), by_registers).warps
+
+
+sm_90, gfx90a, dg2 = nvidia.CORES["sm_90"], amd.CORES["gfx90a"], intel.CORES["dg2"]
+expect([nvidia.warps_of(r) for r in (32, 64, 96, 128, 168, 255)] == [64, 32, 20, 16, 12, 8])
+expect([amd.waves_of(v, s) for v, s in ((172, 104), (64, 96), (128, 16), (129, 16), (24, 104))] == [8, 32, 16, 12, 28])
+expect(warps(sm_90, 32, 32, 64) == 32 and warps(sm_90, 32, 64, 64) == 64)  # at most 32 groups
+expect(warps(sm_90, 32, 1024, 32) == 32 and warps(sm_90, 32, 1024, 31) == 0)
+expect(warps(sm_90, 32, 256, 64, 57 * 1024 - 1024) == 32)  # 228 KB are four of 57
+expect(warps(gfx90a, 64, 32, 32) == 32 and warps(gfx90a, 64, 128, 32) == 32 and warps(gfx90a, 64, 128, 12) == 12)
+expect(warps(dg2, 8, 32, 128) == 128 and warps(dg2, 16, 32, 64) == 64)
+
+# What compilers say.
+expect(not nvidia.faults_of("\tadd.rn.f32 \t%f1, %f2, %f3;\n\tcvt.rzi.s32.f32 \t%r1, %f1;\n\tsetp.gt.f32 \t%p1, %f1, %f2;\n"))
+for line, fault in (("add.f32 %f1;", "nearest"), ("@%p1 mul.rz.f32 %f1;", "nearest"), ("fma.rn.ftz.f32 %f1;", "flushed"),
+                    ("sqrt.approx.f32 %f1;", "nearest"), ("mul.rn.f64 %f1;", "double"), ("max.ftz.f32 %f1;", "flushed")):
+    expect(fault in " ".join(nvidia.faults_of(f"\tmov.u32 %r1, %r2;\n\t{line}\n")), line)
+for line, fault in (("\tv_fma_f64 v[0:1], v[2:3]", "double"), ("\t.amdhsa_float_denorm_mode_32 0", "flushed"),
+                    ("\t.amdhsa_float_round_mode_32 3", "round"), ("\ts_add_u32 s4, s4, _Z3fooi@gotpcrel32@lo+4", "unresolved: _Z3fooi")):
+    expect(fault in " ".join(amd.faults_of(f"bar:\n\tv_add_f32 v0, v1, v2\n{line}\n\ts_add_u32 s4, s4, bar@rel32@lo\n")), line)
+expect(not amd.faults_of("bar:\n\tv_add_f32 v0, v1, v2\n\ts_add_u32 s4, s4, bar@rel32@lo\n"))
+
+# The budget: every figure at its bound and above.
+file = SCRATCH / "budget.csv"
+had = Figures("k", "v", "t", 32, 32, 100, 0, 40, 0)
+Budget(file).write([had], {"t": "a 1"})
+budget = Budget(file)
+expect(budget.judges("t", "a 1") and not budget.judges("t", "a 2") and not budget.judges("u", "a 1"))
+for change, fault in (({}, ""), ({"registers": 105}, ""), ({"registers": 106}, "registers: 106, 100 in the budget"), ({"spills": 1}, "spills: 1, 0"),
+                      ({"scalar_spills": 1}, "scalar spills"), ({"stack": 43}, "stack"), ({"local": 4}, "local"), ({"calls": 1}, "calls"),
+                      ({"width": 16}, "16 work-items in step, 32"), ({"width": 64, "registers": 50}, ""), ({"variant": "w"}, "no budget")):
+    found = list(budget.faults(Figures(**{**had.__dict__, **change})))
+    expect(len(found) == (fault != "") and fault in "".join(found), change, found)
+Budget(file).write([Figures("l", "v", "t", 32, 32, 7, 0, 0, 0)], {"t": "a 1"}, whole=False)
+expect([row["registers"] for row in Budget(file).rows.values()] == ["100", "7"])
+Budget(file).write([Figures("k", "v", "u", 32, 32, 9, 0, 0, 0)], {"u": "b 1"})
+expect(len(Budget(file).rows) == 3 and Budget(file).versions == {"t": "a 1", "u": "b 1"})
+expect(budget.stale({("k", "other", "t")}, ["t"]) == [("k", "v", "t")] and not budget.stale(set(), ["u"]))
+
+# Wrong use; no tools.
+for options, text in ((["--targets", "sm_1"], "sm_1"), (["--write", "--only", "x"], "--write"), (["--jobs", "0"], "--jobs"),
+                      (["--write-budget", "--group", "64"], "--write-budget"), (["--frobnicate"], "frobnicate")):
+    check(*options, code=2, texts=[text])
+bare = SCRATCH / "bin"
+bare.mkdir()
+for program in ("env", "python3"):
+    (bare / program).symlink_to("/usr/bin/" + program)
+check(code=3, path=bare, texts=["Debian: clang-15", "Debian: intel-opencl-icd", "tools/setup --gpu"])
+check("--libclc", "/nowhere", code=3, path=bare, texts=["Debian: libclc-15"])
+
+# The rest compiles kernels.
+small = ["--only", "torus/compose fp32"]
+done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, *small], capture_output=True, text=True)
+if done.returncode == 3:
+    print("no compiler for GPUs is here (tools/setup --gpu); what needs none is as expected")
+    sys.exit(77)
+check("--only", "no such kernel", code=2, texts=["there are", "ring/trace"])
+check("--kernel-dir", "/nowhere", code=2, texts=["/nowhere"])
+told = check(*small)
+versions, kernels = told["versions"], told["kernels"]
+expect([k["target"] for k in kernels] == list(versions) and all(k["kernel"] == "torus/compose" and k["registers"] > 0 for k in kernels), kernels)
+
+
+def budget_of(change=lambda row: None, change_version=lambda version: version):
+    rows = [{key: kernel[key] for key in HEAD} for kernel in kernels]
+    for row in rows:
+        change(row)
+    path = SCRATCH / "changed.csv"
+    with open(path, "w") as to:
+        to.writelines(f"# made for {target}: {change_version(version)}\n" for target, version in versions.items())
+        csv.DictWriter(to, HEAD).writeheader()
+        csv.DictWriter(to, HEAD).writerows(rows)
+    return "--budget", path
+
+
+check(*small, *budget_of())
+lower = budget_of(lambda row: row.update(registers=int(row["registers"] / 1.06)))
+check(*small, *lower, code=4, texts=[f"torus/compose fp32, {target}: registers: " for target in versions] + ["--write-budget"])
+check(*small, *lower, "--write-budget")
+check(*small, "--budget", lower[1])
+other = budget_of(lambda row: row.update(registers=1), lambda version: version + "x")
+check(*small, *other, "--write-budget", code=2, texts=["would mix them"])
+check(*small, *other, texts=[f"{target}: the budget is of another version, not judged" for target in versions])
+only_amd = next((["--targets", target] for target in ("gfx90a", "pvc") if target in versions), [])
+check(*small, *only_amd, *budget_of(lambda row: row.update(variant="x")), code=4, texts=["has no budget"])
+
+# A kernel with a fault in it, seen for every target.
+sum_line = "sum = vec_mad(vec_of(c.x, c.y, c.z), c.w, sum);"
+head = "__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))\nvoid compose("
+for text, changes in (("double precision", [(sum_line, "sum = vec_mad(vec_of((float)((double)c.x * c.y / 3.0), c.y, c.z), c.w, sum);")]),
+                      ("nowhere", [(sum_line, "sum.x = nowhere(c.x);"), (head, "float nowhere(float x);\n" + head)]),
+                      ("does not build", [(sum_line, "sum = vec_nad(sum);")])):
+    told = check(*small, "--kernel-dir", patched("torus/compose.cl", *changes), code=4, texts=[text])
+    expect({fault["target"] for fault in told["faults"]} == set(versions), text, told["faults"])
+
+# A spill where there was none: 600 numbers are read before one is used.
+reads = """    float many[600];
+    volatile __global const float* from = contributions;
+#pragma unroll
+    for (uint i = 0; i < 600; ++i) many[i] = from[i];
+#pragma unroll
+    for (uint i = 0; i < 600; ++i) sum.x += many[i] * many[599 - i];
+    """
+last = "vstore3((float3)(sum.x, sum.y, sum.z), pixel, image);"
+able = next((target for target in ("sm_90", "gfx90a") if target in versions), None)  # the fastest
+if able:
+    check(*small, "--targets", able, *budget_of(), "--kernel-dir", patched("torus/compose.cl", (last, reads + last)), code=4,
+          texts=[f"torus/compose fp32, {able}: spills: "])
+print(f"tools/gpu_check: as expected, for {', '.join(versions)}")

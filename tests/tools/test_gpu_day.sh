@@ -1,0 +1,144 @@
+#!/usr/bin/env bash
+# tools/gpu_day: stopped in the middle, gone on with, and what its page and exit code say of answers that are right, wrong, late or missing.
+#   test_gpu_day.sh          with a stand-in for raya, which renders nothing, in the folder that tools/bundle packs
+#   test_gpu_day.sh RAYA     with the built program on the device at hand: small pictures, minutes of kernel compilation
+set -euo pipefail
+root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+day=$scratch/bundle out=$scratch/out
+mkdir "$day" "$out"
+cp -r "$root"/{tools/gpu_day,tests/portability/gpu_day.csv,scenes} "$day"
+
+fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; echo "$page"; cat "$scratch/err"; exit 1; }
+gpu_day() { code=0; page=$("$day/gpu_day" --out "$out" --small "$@" 2>"$scratch/err") || code=$?; }
+expect() {  # expect CODE TEXT...
+    [[ $code == "$1" ]] || fail "exit code $code, not $1"
+    local text
+    for text in "${@:2}"; do [[ $page$(<"$scratch/err") == *"$text"* ]] || fail "no '$text'"; done
+}
+ended() { find "$out" -name '*.code' | wc -l; }
+
+# What both lists of hashes have is the same in them.
+common=0
+while IFS=, read -r scene options hash; do
+    found=$(awk -F, -v scene="$scene" -v options="$options" '$1 == scene && $2 == options { print $3 }' "$day/gpu_day.csv")
+    [[ -z $found || $found == "$hash" ]] || { echo "FAILED: $scene $options: $hash in renders.csv, $found in gpu_day.csv"; exit 1; }
+    common=$((common + ${#found} / 32))
+done < <(grep -v '^#' "$root/tests/portability/renders.csv")
+((common == 14)) || { echo "FAILED: $common images in both lists, not 14"; exit 1; }
+
+if (($# > 0)); then
+    ln -s "$(readlink -f "$1")" "$day/raya"
+    # Other programs may have most of this machine; what limits do, the stand-in shows.
+    sed -i 's/^limits=.*/limits=(0 3000 3000 3000 3000 3000)/; s/timeout -k 5 "$limit"/timeout -k 5 3000/' "$day/gpu_day"
+    grep -q 'timeout -k 5 3000' "$day/gpu_day"
+else
+    cat >"$day/raya" <<'RAYA'
+#!/usr/bin/env bash
+# Renders with the hash that FILE.csv has for them; what a file here is called makes it fail.
+here=$(dirname "$0")
+fault() { [[ -e $here/$1 ]]; }
+case $1 in
+    --version) echo "raya 0.0.0" ;;
+    devices) if fault no_device; then echo "raya: no OpenCL device"; exit 3; else echo toy; fi ;;
+    verify)
+        fault slow_verify && sleep 20
+        printf 'toy (Toy, driver 1)\nPASS  number\ntoy: 1 checks passed, 0 failed\n'
+        ! fault wrong_verify || { echo "FAIL  geometry  grid"; exit 4; } ;;
+    generate) : >"${@: -1}" ;;
+    bench)
+        if [[ $2 == --help ]]; then printf 'stands for a PE, 1..1,024; default\n'; fault tune && echo "  --tune"; exit; fi
+        group=10 words="$*"
+        [[ $words != *--group* ]] || group=$(sed 's/.*--group \([0-9]*\).*/\1/' <<<"$words")
+        printf 'trace  fp32  1  %d  %d  5  1 1 1 1 1 abc\ntrace  e6m15  1  1  2000.5  5  1 1 1 1 1 abc\n' "$group" $((group * 80)) ;;
+    render)
+        scene=$(basename "$2" .nff)
+        read -ra words <<<"${*:5}"
+        options=
+        for ((i = 0; i < ${#words[@]}; ++i)); do
+            case ${words[i]} in
+                --format | --antialias) options+=" ${words[i]} ${words[i + 1]}" ;;
+                --size) [[ ${words[i + 1]} == 20x20 ]] || options+=" --size ${words[i + 1]}" ;;
+            esac
+        done
+        hash=$(grep -F "$scene,${options# }," "$here/right.csv" | cut -d, -f3)
+        echo "roof    trace: compute bound"
+        echo "image   x.ppm ($hash)" ;;
+esac
+RAYA
+    chmod +x "$day/raya"
+    cp "$day/gpu_day.csv" "$day/right.csv"
+fi
+
+# Killed while it works; what has ended by then is not done again.
+"$day/gpu_day" --out "$out" --small --all >"$scratch/page" 2>"$scratch/err" &
+for ((i = 0; i < 20000; ++i)); do
+    (($(ended) < 6)) || break
+    sleep 0.05
+done
+kill -TERM $! || { page=$(<"$scratch/page") && fail "it had ended before it could be stopped"; }
+wait $! && { page='' && fail "exit code 0 of a run that was stopped"; }
+before=$(ended)
+first=$(cd "$out/steps" && md5sum verify-quick.txt devices.txt)
+gpu_day
+expect 0 "| 1 | devices, verify --quick | 2 | 0 | 0" "hashes (not done)"
+gpu_day --next
+expect 0 "| 3 | hashes | 16 | 0 | 0" "verify --full | 1 | 0" "torus: 4 of 4 right" "large pictures, goals, ranks (not done)"
+(($(ended) > before)) || fail "nothing was done after it was stopped"
+[[ $(cd "$out/steps" && md5sum verify-quick.txt devices.txt) == "$first" ]] || fail "steps that had ended were run again"
+gpu_day --all
+expect 0 "Nothing of what has run" "64 x 64, 30 spheres" "balls 2, bvh" "roofline, tuning | 1" "goals, ranks |" "torus-spa22: "
+[[ $page != *"not done"* && $page != *"not measured"* ]] || fail "the page is not complete"
+[[ $page == "$(<"$out/page.md")" ]] || fail "page.md is another page"
+(($(wc -l <"$out/page.md") < 130)) || fail "more than a page"
+
+# A hash that is not the expected one.
+sed -i 's/^\(cones,--format spa22\),.*/\1,11111111111111111111111111111111/' "$day/gpu_day.csv"
+rm "$out"/steps/hash-bvh-cones-spa22.*
+gpu_day --stage 3
+expect 4 "| 3 | hashes | 15 | 1 | 0" "bvh: 3 of 4 right" "- hash-bvh-cones-spa22: wrong image b2cf660716baa62806768b79dbedff7b, right is 11111111111111111111111111111111"
+if (($# > 0)); then
+    echo "tools/gpu_day: as expected"
+    exit
+fi
+expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of that | 1706.67 | 2000.5 | reached" "1000 | 800 | missed" "raya bench has no --tune"
+
+# Each in a folder of its own: what fails is named, and the rest is done.
+another() { out=$scratch/$1; touch "$day/$1"; gpu_day "${@:2}"; rm "$day/$1"; }
+cp "$day/right.csv" "$day/gpu_day.csv"
+another no_device --all
+expect 3 "no device: raya: no OpenCL device" "devices: exit code 3"
+[[ $(ended) == 1 ]] || fail "something was run without a device"
+another wrong_verify --all
+expect 4 "- verify-full: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 16 | 0 | 0" "| 1 | devices, verify --quick | 1 | 1 | 0"
+another tune --stage 4
+expect 0 "roofline, tuning | 15 | 0 | 0"
+
+# A step that hangs; and a stage whose time is over, which goes on when it is asked for again.
+sed -i 's/^limits=.*/limits=(0 3 1 0 60 60)/' "$day/gpu_day"
+another slow_verify --all
+expect 4 "- verify-quick: not done after" "| 3 | hashes | 0 | 16 | 0" "- hash-torus-cones-spa22: late" "| 4 | bench, roofline, tuning | 13 | 0 | 1"
+sed -i 's/^limits=.*/limits=(0 60 60 60 60 60)/' "$day/gpu_day"
+gpu_day --stage 3
+expect 4 "- verify-quick: not done after" "| 3 | hashes | 16 | 0 | 0"
+
+# A driver that no entry of /etc/OpenCL/vendors names.
+out=$scratch/driver
+mkdir "$scratch/bin"
+printf '#!/bin/sh\necho "	libamdocl64.so (libc6,x86-64) => /somewhere/libamdocl64.so"\n' >"$scratch/bin/ldconfig"
+chmod +x "$scratch/bin/ldconfig"
+unset OCL_ICD_VENDORS
+PATH=$scratch/bin:$PATH gpu_day --stage 1
+expect 0 "OCL_ICD_VENDORS=$out/vendors"
+[[ $(<"$out/vendors/libamdocl64.icd") == libamdocl64.so ]] || fail "no entry for the driver"
+
+# Wrong use.
+for words in --nonsense "--stage 6" --stage "--raya $scratch/none" "--expected $scratch/none"; do
+    # shellcheck disable=SC2086  # several words
+    gpu_day $words
+    expect 2 "gpu_day: "
+done
+code=0 page=$("$day/gpu_day" --all 2>"$scratch/err") || code=$?
+expect 2 "--out DIR is needed"
+echo "tools/gpu_day: as expected"

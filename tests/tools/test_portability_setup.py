@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""tools/portability --setup without a network: stand-ins for the wheels, in a folder that pip looks into. Drivers whose device is not here."""
+import hashlib, os, struct, subprocess, sys, tempfile, zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "tools"))
+import portability_implementations
+import portability_setup
+
+# What pocl_get_llvm_cpu_name() begins with: call LLVM; test rdx, rdx; je; mov rbp, rax.
+ASKS_LLVM = bytes.fromhex("5553 4883ec08 e8058ab003 4885d2 7430 4889c5")
+DRIVER = b"\x90" * 64 + ASKS_LLVM + b"\x90" * 64 + b"\0generic\0haswell\0skylake-avx512\0"
+ZEN5 = "vendor_id\t: AuthenticAMD\ncpu family\t: 26\nflags\t\t: fpu avx2 avx512f avx512vl\n"
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def make_wheel(folder, name, version, files):
+    """A wheel that pip takes, of pure Python by its name; returns a line of requirements."""
+    path = folder / f"{name.replace('-', '_')}-{version}-py3-none-any.whl"
+    info = f"{name.replace('-', '_')}-{version}.dist-info"
+    with zipfile.ZipFile(path, "w") as wheel:
+        for file, content in files.items():
+            wheel.writestr(file.format(data=f"{name.replace('-', '_')}-{version}.data/data"), content)
+        wheel.writestr(f"{info}/METADATA", f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+        wheel.writestr(f"{info}/WHEEL", "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\nTag: py3-none-any\n")
+        wheel.writestr(f"{info}/RECORD", "")
+    return f"{name}=={version} --hash=sha256:{hashlib.sha256(path.read_bytes()).hexdigest()}\n"
+
+
+def set_up(build, packages, wheels):
+    """Exit code and all that was said."""
+    variables = {k: v for k, v in os.environ.items() if not k.startswith("PIP_")}
+    variables |= {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(wheels)}
+    done = subprocess.run([ROOT / "tools" / "portability", "--setup", "--build", build, "--packages", packages], env=variables,
+                          capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+def check_setting_up(scratch):
+    build, packages, wheels, empty = (scratch / name for name in ("build", "packages", "wheels", "empty"))
+    for folder in (packages, wheels, empty):
+        folder.mkdir()
+    library = {"{data}/lib/libintelocl.so": b"driver 1", "{data}/lib/libintelocl.so.1": b"driver 1", "{data}/share/LICENCE": b"text"}
+    (packages / "intel-cpu.txt").write_text("# said\n" + make_wheel(wheels, "intel-stand-in", "1.0", library))
+    pocl = {"pyopencl/.libs/libpocl-21.so": DRIVER, "pyopencl/.libs/pocl.icd": b"libpocl-21.so"}
+    (packages / "pocl-3.0.txt").write_text(make_wheel(wheels, "pocl-stand-in", "3.0", pocl))
+
+    code, told = set_up(build, packages, empty)
+    expect(code == 3 and "intel-cpu.txt: pip got no packages" in told and "remedy: a network" in told, f"no packages: {code} {told}")
+    expect([p.name for p in (build / "implementations").iterdir()] == [], "something was left behind")
+
+    code, told = set_up(build, packages, wheels)
+    expect(code == 0 and "intel-cpu: fetching intel-stand-in==1.0" in told and "MB fetched" in told, f"set up: {code} {told}")
+    here = build / "implementations"
+    for name, driver in (("intel-cpu", "lib/libintelocl.so"), ("pocl-3.0", "pyopencl/.libs/libpocl-21.so")):
+        expect((here / f"{name}.icd").read_text() == f"{here / name / driver}\n", f"{name}.icd")
+        expect((here / name / driver).exists(), f"no {driver}")
+    twice = [(here / "intel-cpu" / "lib" / name).stat().st_ino for name in ("libintelocl.so", "libintelocl.so.1")]
+    expect(twice[0] == twice[1], "equal members take twice the room")
+    listed = subprocess.run([ROOT / "tools" / "portability", "--list", "--build", build, "--raya", "/bin/true"], capture_output=True, text=True).stdout
+    expect("Intel CPU: here\n" in listed and "PoCL 3.0 (PyPI): here\n" in listed, listed)
+
+    code, told = set_up(build, packages, empty)
+    expect(code == 0 and "intel-cpu: is here" in told and "pocl-3.0: is here" in told, f"again, without packages: {told}")
+
+    wrong = (packages / "intel-cpu.txt").read_text().replace("sha256:", "sha256:0")[:-2] + "\n"
+    (packages / "intel-cpu.txt").write_text(wrong)
+    code, told = set_up(build, packages, wheels)
+    expect(code == 3 and "intel-cpu" in told, f"a wrong hash: {code} {told}")
+    expect((here / "intel-cpu.icd").exists() and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 1", "the old one is gone")
+
+    library["{data}/lib/libintelocl.so"] = b"driver 2"
+    (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "2.0", library))
+    code, told = set_up(build, packages, wheels)
+    expect(code == 0 and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 2", f"a newer version: {told}")
+
+    (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "3.0", {"{data}/lib/other.so": b""}))
+    code, told = set_up(build, packages, wheels)
+    expect(code == 3 and "no driver lib/libintelocl.so" in told, f"no driver: {told}")
+
+
+def check_naming_the_cpu(scratch):
+    lacks = portability_setup.cpu_that_llvm_14_lacks
+    expect(lacks(ZEN5) == "skylake-avx512", "AMD's family 26")
+    expect(lacks(ZEN5.replace("avx512vl", "")) == "haswell", "AMD's family 26 without AVX-512")
+    expect(lacks(ZEN5.replace("26", "25")) is None, "a CPU that LLVM 14 knows")
+    expect(lacks(ZEN5.replace("AuthenticAMD", "GenuineIntel")) is None and lacks("") is None, "other makers")
+    library = scratch / "libpocl.so"
+    library.write_bytes(DRIVER)
+    portability_setup.name_cpu(library, "skylake-avx512")
+    code = library.read_bytes()
+    at = 64 + 6  # lea rax, [rip + d]; push length; pop rdx
+    expect(code[at:at + 3] == b"\x48\x8d\x05" and code[at + 7:at + 10] == b"\x6a\x0e\x5a", "the instructions")
+    text = at + 7 + struct.unpack_from("<i", code, at + 3)[0]
+    expect(code[text:text + 15] == b"skylake-avx512\0", "where the name lies")
+    expect(code[:at] == DRIVER[:at] and code[at + 10:] == DRIVER[at + 10:], "something else was changed")
+    try:
+        portability_setup.name_cpu(library, "haswell")
+        expect(False, "a library without that place was taken")
+    except portability_setup.SetupError:
+        expect(library.read_bytes() == code, "a library without that place was changed")
+
+
+def check_missing_devices(scratch):
+    portability_implementations.VENDORS = scratch
+    for driver in ("pocl", "gpu", "other"):
+        (scratch / f"{driver}.icd").write_text(f"lib{driver}.so\n")
+    raya = scratch / "raya"
+    raya.write_text("#!/bin/sh\ncase $OCL_ICD_VENDORS in */other.icd) exit 1 ;; esac; exit 3\n")  # 3: no device; 1: a fault
+    raya.chmod(0o755)
+    known = portability_implementations.known_implementations(scratch)
+    portability_implementations.note_missing_devices(known, str(raya))
+    lacking = {i.name: i.lacking for i in known}
+    expect(lacking["gpu"] == "its driver is installed, and shows no device", f"a driver without its device: {lacking['gpu']}")
+    expect(lacking["other"] is None and lacking["PoCL"] is None, "a driver with a fault, and PoCL without a device, were left out")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as scratch:
+        check_naming_the_cpu(Path(scratch))
+        check_missing_devices(Path(scratch))
+        if subprocess.run([sys.executable, "-m", "pip", "--version"], capture_output=True).returncode != 0:
+            print("no pip: what fetches packages was not looked at")
+            return 77
+        check_setting_up(Path(scratch))
+    print("tools/portability --setup: as expected")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

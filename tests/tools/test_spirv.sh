@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Every kernel as SPIR-V, the form that drivers take kernels in: made by clang and llvm-spirv, and right by spirv-val's rules for OpenCL 1.2.
+#   tests/tools/test_spirv.sh       77: clang-15, llvm-spirv-15 or spirv-val is missing (Debian: clang-15, llvm-spirv-15, spirv-tools)
+# Unoptimised, and SPIR-V 1.0: docs/porting.md tells what llvm-spirv-15 makes of the rest.
+set -euo pipefail
+root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
+for tool in clang-15 llvm-spirv-15 spirv-val; do
+    command -v $tool >/dev/null || { echo "no $tool"; exit 77; }
+done
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+scene=(-DRAYA_GROUP=32 -DRAYA_BOUNCES=8 -DRAYA_POLYGONS=1 -DRAYA_PATCHES=1 -DRAYA_CONES=1 -DRAYA_BVH_STACK=15)
+
+# module FILE OPTION...: $scratch/module.spv
+module() {
+    clang-15 -x cl -cl-std=CL1.2 -target spir64-unknown-unknown -O0 -Xclang -finclude-default-header -D__OPENCL_VERSION__=120 \
+        -I "$root" "${scene[@]}" "${@:2}" -emit-llvm -c "$1" -o "$scratch/module.bc"
+    llvm-spirv-15 --spirv-max-version=1.0 "$scratch/module.bc" -o "$scratch/module.spv"
+}
+
+made=0
+for kernel in "$root"/kernels/*/*.cl; do
+    words=1 accels=(0) widths=(1 16)
+    case $kernel in
+        */ring/trace.cl) accels=(0 1 2) ;;
+        */checks/hits.cl) accels=(0 1 2) words=0 ;;
+        */ring/filter.cl | */ring/contrast.cl | */torus/compose.cl) widths=(1) ;;  # one pixel at a time
+    esac
+    for lanes in "${widths[@]}"; do
+        for format in "8 23" "6 15"; do
+            for accel in "${accels[@]}"; do
+                module "$kernel" -DRAYA_LANES="$lanes" -DRAYA_EXPONENT_BITS="${format% *}" -DRAYA_FRACTION_BITS="${format#* }" \
+                    -DRAYA_ACCEL="$accel" -DRAYA_WORDS_LOCAL="$words"
+                spirv-val --target-env opencl1.2 "$scratch/module.spv" ||
+                    { echo "FAILED: ${kernel#"$root"/}, $lanes lanes, format $format, accelerator $accel"; exit 1; }
+                made=$((made + 1))
+            done
+        done
+    done
+done
+((made >= 40)) || { echo "FAILED: only $made modules"; exit 1; }
+truncate -s -8 "$scratch/module.spv"
+! spirv-val --target-env opencl1.2 "$scratch/module.spv" 2>"$scratch/told" || { echo "FAILED: a module without its end is right"; exit 1; }
+echo "SPIR-V: $made modules are right"

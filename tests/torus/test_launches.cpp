@@ -1,0 +1,182 @@
+// Launches that end after a little work and go on, and links by a kernel in place of copies: the same image and the
+// same counts.
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "host/scene/word_records.hpp"
+#include "host/torus/launch_plan.hpp"
+#include "host/torus/standstill.hpp"
+#include "tests/thorough.hpp"
+#include "tests/torus/random_torus.hpp"
+#include "tests/torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+// All that is counted, superstep by superstep.
+void check_same(const TorusResult& a, const TorusResult& b) {
+    CHECK(pixel_hash(a.image) == pixel_hash(b.image));
+    CHECK(a.events == b.events);
+    CHECK(a.made == b.made);
+    CHECK(a.ended == b.ended);
+    CHECK(a.load.per_pe == b.load.per_pe);
+    CHECK(a.link_words == b.link_words);
+    CHECK(a.link_packets == b.link_packets);
+    CHECK(a.queue_max == b.queue_max);
+    CHECK(a.supersteps.size() == b.supersteps.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < std::min(a.supersteps.size(), b.supersteps.size()); ++i) {
+        const Superstep &x = a.supersteps[i], &y = b.supersteps[i];
+        different += x.most_cycles != y.most_cycles || x.most_link_words != y.most_link_words || x.live != y.live;
+    }
+    CHECK(different == 0);
+}
+
+std::uint64_t launches_of(const TorusResult& r) {
+    std::uint64_t launches = 0;
+    for (const LabelSummary& c : r.commands)
+        if (c.kind == "kernel") launches += c.launches;
+    return launches;
+}
+
+TorusCase random_case(SplitMix& random, const Scene& scene) {
+    const std::uint32_t widths[] = {1, 1, 4};
+    TorusCase c{.width = 6 + random_below(random, 8), .height = 5 + random_below(random, 6)};
+    c.nodes = random_sides(random, 3);
+    if (random_below(random, 3) == 0)
+        c.voxels = {1 + random_below(random, 4), 1 + random_below(random, 4), 1 + random_below(random, 4)};
+    c.links = random_below(random, 2) ? Links::kTorus3d : Links::kTorus2d;
+    c.inject = random_below(random, 3) ? Injection::kAll : Injection::kRoot;
+    c.packets = random_charge(random);
+    c.bounces = 3;
+    c.lanes = widths[random_below(random, 3)];
+    c.group = c.lanes == 1 ? 3 : 1;
+    if (random_below(random, 4))
+        c.queue = raya_shortest_queue(lights_of(scene), c.bounces) + 20 + random_below(random, 60);
+    return c;
+}
+
+// A node of two, which has one voxel of so many spheres.
+NodeMemories two_nodes(const raya_torus& torus, std::uint32_t spheres) {
+    NodeMemories memories;
+    memories.starts = {0};
+    for (std::uint32_t node = 0; node < 2; ++node) {
+        raya_node header{};
+        header.job.mapping.width = header.job.mapping.height = 16;
+        header.job.lights = 1;
+        header.torus = torus;
+        header.number = node;
+        header.voxels = 1;
+        header.voxels_at = kWordsOf<raya_node>;
+        raya_voxel_memory voxel{};
+        voxel.objects.spheres = spheres;
+        const std::size_t start = memories.words.size();
+        memories.words.resize(start + kWordsOf<raya_node> + kWordsOf<raya_voxel_memory>);
+        put_record(memories.words, start, header);
+        put_record(memories.words, start + kWordsOf<raya_node>, voxel);
+        memories.starts.push_back(static_cast<std::uint32_t>(memories.words.size()));
+    }
+    return memories;
+}
+
+}  // namespace
+
+TEST_CASE("launches of little work, and links by a kernel, make the image and the counts of one launch a step",
+          "[torus]") {
+    const std::uint64_t seed = 20261;
+    SplitMix random(seed);
+    Session session(choose_device(""));
+    std::uint64_t once = 0, bounded = 0;
+    for (unsigned i = 0; i < quick_cases(40, 300); ++i) {
+        const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
+        const TorusCase c = random_case(random, scene);
+        TorusSettings settings = settings_of(c);
+        const std::uint32_t works[] = {1, 7, 100};
+        settings.work_per_launch = works[i % 3];
+        settings.link_move = i % 2 ? LinkMove::kKernel : LinkMove::kCopies;
+        CAPTURE(seed, i, settings.work_per_launch, case_text(c));
+        try {
+            const TorusResult whole = render_torus(session, scene, c);
+            const TorusResult parts = TorusRenderer(session, scene, settings).render();
+            check_same(parts, whole);
+            once += launches_of(whole);
+            bounded += launches_of(parts);
+        } catch (const Standstill&) {  // of the one as of the other
+            CHECK_THROWS_AS(TorusRenderer(session, scene, settings).render(), Standstill);
+        }
+    }
+    CHECK(bounded > 4 * once);
+}
+
+TEST_CASE("work-groups of many work-items make the same image", "[torus]") {
+    Session session(choose_device(""));
+    const Scene scene = random_view_scene(kRichScenes[0]);
+    TorusCase c{.width = 12, .height = 10, .nodes = {2, 2, 1}, .lanes = 1, .group = 1, .bounces = 3};
+    c.queue = 400;
+    const std::string right = one_image(render_torus(session, scene, c));
+    for (const std::uint32_t group : quick(1, {64u, 33u})) {
+        CAPTURE(group);
+        c.group = group;
+        CHECK(one_image(render_torus(session, scene, c)) == right);
+    }
+}
+
+TEST_CASE("a node's launch is bounded by tests, and by the turns of loops where a device counts them", "[torus]") {
+    const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
+    const NodeShare share(torus);
+    TorusSettings settings;
+    settings.torus = torus;
+    DeviceInfo device;
+    device.correctly_rounded_divide_sqrt = true;
+    const auto plan_of = [&](std::uint32_t spheres) {
+        return LaunchPlan(settings, two_nodes(torus, spheres), share, {8192, 2048}, {}, device);
+    };
+    NodeStatus status(2);
+    status.words[RAYA_STATUS_QUEUE] = 1000;
+    status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // may come to node 0
+
+    LaunchPlan few = plan_of(100), many = plan_of(1'000'000);
+    CHECK(many.trace_voxel().once);  // nothing is there
+    few.look(status);
+    many.look(status);
+    CHECK(few.trace_voxel().once);
+    CHECK(few.inject().once);
+    CHECK(many.trace_voxel() == LaunchBudget{100'000'000, false});
+    many.clear();
+    CHECK(many.trace_voxel().once);
+
+    device.loop_turns = 65'535;
+    LaunchPlan short_loops = plan_of(100), one_voxel_too_long = plan_of(10'000);
+    CHECK(short_loops.route() == LaunchBudget{7679, false});  // queues may hold 8192 packets
+    CHECK_FALSE(short_loops.accept().once);
+    for (const auto& [packets, once] : {std::pair{22u, true}, std::pair{23u, false}}) {  // 1 + 100 + 12 units each
+        NodeStatus waiting(2);
+        waiting.words[RAYA_STATUS_QUEUE] = packets - 5;
+        waiting.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 5;
+        short_loops.look(waiting);
+        CAPTURE(packets);
+        CHECK(short_loops.trace_voxel() == (once ? LaunchBudget{2559, true} : LaunchBudget{2559 - 113, false}));
+    }
+    one_voxel_too_long.look(status);
+    CHECK(one_voxel_too_long.trace_voxel() == LaunchBudget{1, false});  // a packet a launch; the canary tells
+}
+
+TEST_CASE("a device that ends loops early is found out, whichever kernel it was", "[torus]") {
+    Session session(choose_device(""));
+    const Scene scene = random_view_scene(kRichScenes[0]);
+    TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
+    for (const char* file :
+         {"torus/inject.cl", "torus/trace_voxel.cl", "torus/route.cl", "torus/accept.cl", "torus/compose.cl"}) {
+        CAPTURE(file);
+        c.sources.patches = {{file, "if (loops_were_cut(", "if (!loops_were_cut("}};
+        CHECK_THROWS_WITH(render_torus(session, scene, c),
+                          Catch::Contains("has ended loops early and said nothing") && Catch::Contains("remedy"));
+        CHECK_THROWS_AS(render_torus(session, scene, c), DeviceError);
+    }
+    // What a canary must see: its loop ends after the first turn.
+    c.sources.patches = {
+        {"shared/loop_canary.clh", "i < two; ++i) turns = turns + 1;", "i < two; ++i) { turns = turns + 1; break; }"}};
+    CHECK_THROWS_AS(render_torus(session, scene, c), DeviceError);
+}
+
+}  // namespace raya

@@ -1,0 +1,210 @@
+// The search, over costs that are made up: how near it comes to the best, and in how many trials.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "host/tune/search.hpp"
+
+namespace raya {
+namespace {
+
+using Cost = std::function<double(const Candidate&)>;
+
+const SearchEnd kNeverEnds = [] { return false; };
+
+Space random_space(std::mt19937& random) {
+    const auto below = [&](std::uint32_t end) { return static_cast<std::size_t>(random() % end); };
+    Space space;
+    const std::size_t knobs = 3 + below(3);
+    for (std::size_t k = 0; k < knobs; ++k) {
+        space.knobs.push_back({"knob", &TunedValues::lanes, std::vector<std::uint32_t>(2 + below(5))});
+        space.start.push_back(below(static_cast<std::uint32_t>(space.knobs.back().values.size())));
+    }
+    return space;
+}
+
+double least_cost(const Space& space, const Cost& cost) {
+    double least = INFINITY;
+    for_each_candidate(space, [&](const Candidate& c) { least = std::min(least, cost(c)); });
+    return least;
+}
+
+// Each knob has a best value, from which its cost grows on either side, by its own steps.
+struct Valley {
+    Valley(const Space& space, std::mt19937& random) {
+        std::uniform_real_distribution<double> step(0.02, 0.6);
+        for (const Knob& knob : space.knobs) {
+            best.push_back(random() % knob.values.size());
+            steps.push_back(step(random));
+        }
+    }
+    double at(std::size_t knob, double place) const {
+        return std::exp(steps[knob] * std::abs(place - static_cast<double>(best[knob])));
+    }
+
+    std::vector<std::size_t> best;
+    std::vector<double> steps;
+};
+
+Cost separable(const Space& space, std::mt19937& random) {
+    return [valley = Valley(space, random)](const Candidate& c) {
+        double cost = 1;
+        for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.at(k, static_cast<double>(c[k]));
+        return cost;
+    };
+}
+
+// The best value of one knob follows another's: as lanes and group share what a device holds at once.
+Cost shared(const Space& space, std::mt19937& random) {
+    const double share = std::uniform_real_distribution<double>(-0.8, 0.8)(random);
+    return [valley = Valley(space, random), share](const Candidate& c) {
+        double cost = 1;
+        for (std::size_t k = 0; k < c.size(); ++k) {
+            const double other = k == 1 ? static_cast<double>(c[0]) - static_cast<double>(valley.best[0]) : 0;
+            cost *= valley.at(k, static_cast<double>(c[k]) - share * other);
+        }
+        return cost;
+    };
+}
+
+// Above a sum of places there are no registers left: a cliff across the valley.
+Cost spilling(const Space& space, std::mt19937& random) {
+    const std::size_t most = 2 + random() % 5;
+    return [valley = Valley(space, random), most](const Candidate& c) {
+        double cost = c[0] + c[1] > most ? 1.5 : 1.0;
+        for (std::size_t k = 0; k < c.size(); ++k) cost *= valley.at(k, static_cast<double>(c[k]));
+        return cost;
+    };
+}
+
+struct Found {
+    double loss;   // of the best found over the best there is
+    double share;  // of the space that was tried
+};
+
+// `noise`: of each measurement, evenly to either side.
+Found find(const Space& space, const Cost& cost, std::mt19937& random, double noise) {
+    std::uniform_real_distribution<double> error(-noise, noise);
+    std::map<Candidate, int> asked;
+    const Judge judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
+        CHECK(++asked[candidate] == 1);
+        CHECK(candidate != space.start);
+        return cost(candidate) / cost(best) * (1 + error(random));
+    };
+    const SearchResult result = search(space, judge, kNeverEnds);
+    CHECK(result.ended);
+    CHECK(result.tried == asked.size());
+    return {cost(result.best) / least_cost(space, cost),
+            static_cast<double>(result.tried) / static_cast<double>(space.size())};
+}
+
+TEST_CASE("the search ends within 5 % of the best, having tried a fraction", "[tune]") {
+    struct Family {
+        const char* name;
+        Cost (*make)(const Space&, std::mt19937&);
+        int most_missed;  // of 200
+    };
+    constexpr int kSpaces = 200;
+    for (const Family& family :
+         {Family{"separable", separable, 0}, Family{"shared", shared, 10}, Family{"spilling", spilling, 4}})
+        for (const double noise : {0.0, 0.01}) {
+            int missed = 0;
+            double share = 0;
+            for (unsigned seed = 1; seed <= kSpaces; ++seed) {
+                std::mt19937 random(seed);
+                const Space space = random_space(random);
+                const Found found = find(space, family.make(space, random), random, noise);
+                missed += found.loss > 1.05;
+                share += found.share / kSpaces;
+                INFO(family.name << ", noise " << noise << ", seed " << seed << ": " << found.loss);
+                CHECK(found.loss < 1.5);
+            }
+            INFO(family.name << ", noise " << noise << ": " << missed << " of " << kSpaces << " missed, " << share
+                             << " tried");
+            CHECK(missed <= family.most_missed);
+            CHECK(share < 0.2);
+        }
+}
+
+TEST_CASE("what is dropped is never the best, and the search goes on around it", "[tune]") {
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+        std::mt19937 random(seed);
+        const Space space = random_space(random);
+        const Cost cost = separable(space, random);
+        const std::size_t bad = random() % space.knobs[0].values.size();
+        const Judge judge = [&](const Candidate& best, const Candidate& candidate) -> std::optional<double> {
+            if (candidate[0] == bad) return {};
+            return cost(candidate) / cost(best);
+        };
+        const SearchResult result = search(space, judge, kNeverEnds);
+        CAPTURE(seed, bad);
+        CHECK((result.best[0] != bad || space.start[0] == bad));
+    }
+}
+
+TEST_CASE("the search ends when it is told to, with the best so far", "[tune]") {
+    std::mt19937 random(7);
+    const Space space = random_space(random);
+    const Cost cost = separable(space, random);
+    for (const std::size_t most : {0, 1, 3}) {
+        std::size_t judged = 0;
+        const Judge judge = [&](const Candidate& best, const Candidate& candidate) {
+            ++judged;
+            return std::optional(cost(candidate) / cost(best));
+        };
+        const SearchResult result = search(space, judge, [&] { return judged >= most; });
+        CHECK(result.tried == most);
+        CHECK_FALSE(result.ended);
+        CHECK(cost(result.best) <= cost(space.start));
+    }
+}
+
+TEST_CASE("a difference within the noise is no win", "[tune]") {
+    std::mt19937 random(1);
+    const Space space = random_space(random);
+    const Judge judge = [&](const Candidate&, const Candidate&) { return std::optional(0.985); };
+    CHECK(search(space, judge, kNeverEnds).best == space.start);
+}
+
+TEST_CASE("an exhaustive search finds the best of all", "[tune]") {
+    std::mt19937 random(3);
+    const Space space = random_space(random);
+    const Cost cost = shared(space, random);
+    const Judge judge = [&](const Candidate& best, const Candidate& candidate) {
+        return std::optional(cost(candidate) / cost(best));
+    };
+    const SearchResult all = search_all(space, space.start, judge, kNeverEnds);
+    CHECK(all.tried == space.size() - 1);
+    CHECK(cost(all.best) <= least_cost(space, cost) / kLeastWin);
+}
+
+TEST_CASE("a space has the defaults in it, and what the device takes", "[tune]") {
+    for (const auto& [type, most, platform] : {std::tuple{"cpu", 4096, "PoCL"},
+                                               {"cpu", 1, "PoCL"},
+                                               {"gpu", 1024, "NVIDIA CUDA"},
+                                               {"gpu", 8, "rusticl"},
+                                               {"other", 16, "x"}})
+        for (const std::uint32_t accel : {RAYA_ACCEL_NONE, RAYA_ACCEL_GRID, RAYA_ACCEL_BVH}) {
+            DeviceInfo device;
+            device.type = type;
+            device.platform = platform;
+            device.max_group_size = static_cast<std::size_t>(most);
+            device.native_float_width = 8;
+            const Space space = space_of(device, {.accel = accel});
+            CAPTURE(type, most, platform, accel);
+            CHECK(space.values_of(space.start) == default_values(device));
+            bool limits_registers = false;
+            for (const Knob& knob : space.knobs) limits_registers |= knob.name == "registers";
+            CHECK(limits_registers == (device.platform == "NVIDIA CUDA"));
+            for_each_candidate(space, [&](const Candidate& candidate) {
+                const KernelChoice kernels = with_values({}, space.values_of(candidate));
+                CHECK_NOTHROW(build_options(
+                    {.lanes = kernels.lanes, .group_size = kernels.group_size, .accel = accel, .more = kernels.more},
+                    device));
+            });
+        }
+}
+
+}  // namespace
+}  // namespace raya

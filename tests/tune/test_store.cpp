@@ -1,0 +1,182 @@
+// What was tuned, in its file and out of it again.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+
+#include "host/error.hpp"
+#include "host/tune/store.hpp"
+#include "tests/cli/run_program.hpp"
+#include "tests/files/scratch_folder.hpp"
+
+namespace raya {
+namespace {
+
+DeviceInfo some_device() {
+    DeviceInfo device;
+    device.name = "GeForce (TM) / 9";
+    device.platform = "NVIDIA CUDA";
+    device.version = "OpenCL 3.0";
+    device.driver = "550.1";
+    device.type = "gpu";
+    device.max_group_size = 1024;
+    return device;
+}
+
+const TunedFile kFile{.date = "2026-11-22",
+                      .entries = {{.what = {.torus = false, .accel = RAYA_ACCEL_GRID, .fp32 = true},
+                                   .values = {4, 16, 0, 8, 2, 1, 96},
+                                   .speedup = 1.25,
+                                   .scene = "own"},
+                                  {.what = {.torus = true, .accel = RAYA_ACCEL_NONE, .fp32 = false},
+                                   .values = {1, 64, 1, 0, 0, 0, 0},
+                                   .speedup = 1,
+                                   .scene = "x.nff"}}};
+
+/// XDG_CACHE_HOME is the folder, and RAYA_TUNED not set, while it lives.
+class OwnCache {
+  public:
+    OwnCache() {
+        setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
+        unsetenv("RAYA_TUNED");
+    }
+    ~OwnCache() {
+        unsetenv("XDG_CACHE_HOME");
+        setenv("RAYA_TUNED", "off", 1);
+    }
+    const ScratchFolder& folder() const { return folder_; }
+
+  private:
+    ScratchFolder folder_;
+};
+
+struct Warned {
+    std::vector<std::string> texts{};
+    TunedSource source = kept_choices([this](const std::string& text) { texts.push_back(text); });
+};
+
+TEST_CASE("a file of tuned values comes back as it was written", "[tune]") {
+    const DeviceInfo device = some_device();
+    const TunedFile read = read_tuned(tuned_text(device, kFile), device);
+    CHECK(read.date == kFile.date);
+    REQUIRE(read.entries.size() == kFile.entries.size());
+    for (std::size_t i = 0; i < read.entries.size(); ++i) {
+        CHECK(read.entries[i].what == kFile.entries[i].what);
+        CHECK(read.entries[i].values == kFile.entries[i].values);
+        CHECK(read.entries[i].speedup == kFile.entries[i].speedup);
+        CHECK(read.entries[i].scene == kFile.entries[i].scene);
+    }
+}
+
+TEST_CASE("a damaged file, and one of something else, is refused with the reason", "[tune]") {
+    const DeviceInfo device = some_device();
+    const std::string text = tuned_text(device, kFile);
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string other = text;
+        REQUIRE(contains(other, from));
+        return other.replace(other.find(from), from.size(), to);
+    };
+    for (const auto& [bad, reason] : {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "damaged"},
+                                      {"", "damaged"},
+                                      {"{}", "no file of raya bench --tune"},
+                                      {changed("\"version\": 1", "\"version\": 2"), "another form"},
+                                      {changed("\"raya\": \"", "\"raya\": \"9."), "another version of raya: 9."},
+                                      {changed("550.1", "551.0"), "another device's driver: 551.0, not 550.1"},
+                                      {changed("GeForce", "Radeon"), "another device's name"},
+                                      {changed("\"lanes\": 4", "\"lanes\": 5"), "lanes 5"},
+                                      {changed("\"group\": 16", "\"group\": 100000"), "group 100000"},
+                                      {changed("\"batch\": 8", "\"batch\": 33"), "batch 33"},
+                                      {changed("\"trees\": 2", "\"trees\": -2"), "damaged"},
+                                      {changed("\"accel\": \"grid\"", "\"accel\": \"octree\""), "octree"},
+                                      {changed("\"beams\"", "\"beam\""), "damaged"}}) {
+        CAPTURE(reason);
+        CHECK_THROWS_WITH(read_tuned(bad, device), Catch::Contains(reason));
+        CHECK_THROWS_AS(read_tuned(bad, device), UserError);
+    }
+}
+
+TEST_CASE("what is kept is found by device, driver and kind of kernels", "[tune]") {
+    const OwnCache cache;
+    const DeviceInfo device = some_device();
+    keep_tuned(device, kFile);
+    Warned warned;
+    const auto found = warned.source(device, kFile.entries[0].what);
+    REQUIRE(found);
+    CHECK(found->values == kFile.entries[0].values);
+    CHECK_THAT(found->origin, Catch::Contains(tuned_file_name(device)) && Catch::EndsWith(", 2026-11-22"));
+    CHECK_FALSE(warned.source(device, {.torus = false, .accel = RAYA_ACCEL_BVH, .fp32 = true}));
+    DeviceInfo newer = device;
+    newer.driver = "551.0";
+    CHECK_FALSE(warned.source(newer, kFile.entries[0].what));
+    CHECK(warned.texts.empty());
+    CHECK(cache.folder().entries() == 1);
+}
+
+TEST_CASE("entries of other kinds stay, those of the same are replaced", "[tune]") {
+    const OwnCache cache;
+    const DeviceInfo device = some_device();
+    keep_tuned(device, kFile);
+    TunedEntry other = kFile.entries[0];
+    other.values.lanes = 16;
+    keep_tuned(device, {"2027-01-01", {other}});
+    Warned warned;
+    CHECK(warned.source(device, other.what)->values.lanes == 16);
+    CHECK(warned.source(device, kFile.entries[1].what)->values == kFile.entries[1].values);
+    CHECK(warned.source(device, kFile.entries[1].what)->origin.ends_with(", 2027-01-01"));
+}
+
+TEST_CASE("a file that cannot be used is told of once, ignored, and written over", "[tune]") {
+    const OwnCache cache;
+    const DeviceInfo device = some_device();
+    const std::filesystem::path file = tuned_place(device);
+    for (const bool folder : {false, true}) {
+        if (!folder) std::ofstream(file) << "{\"kind\":";
+        if (folder) std::filesystem::create_directory(file);
+        Warned warned;
+        for (const TunedEntry& entry : kFile.entries) CHECK_FALSE(warned.source(device, entry.what));
+        REQUIRE(warned.texts.size() == 1);
+        CHECK_THAT(warned.texts[0], Catch::Contains(file.string()) && Catch::Contains("ignored") &&
+                                        Catch::Contains("raya bench --tune"));
+        if (folder) break;
+        keep_tuned(device, kFile);
+        CHECK(Warned().source(device, kFile.entries[0].what));
+        std::filesystem::remove(file);
+    }
+    CHECK_THROWS_AS(tuned_place(device), UserError);  // a folder lies there
+}
+
+TEST_CASE("RAYA_TUNED=off, and a home that is no absolute path, leave the defaults", "[tune]") {
+    const OwnCache cache;
+    const DeviceInfo device = some_device();
+    keep_tuned(device, kFile);
+    setenv("RAYA_TUNED", "off", 1);
+    CHECK_FALSE(Warned().source);
+    unsetenv("RAYA_TUNED");
+    setenv("XDG_CACHE_HOME", "relative", 1);
+    CHECK((!tuned_folder() || tuned_folder()->is_absolute()));
+}
+
+TEST_CASE("renders take what is known of a device, unless lanes or group are named", "[tune]") {
+    DeviceInfo device = some_device();
+    device.type = "cpu";
+    device.native_float_width = 16;
+    const TunedFor what{.torus = false, .accel = RAYA_ACCEL_NONE, .fp32 = true};
+    CHECK(chosen({}, device, what).origin == "defaults");
+    const TunedUse use([](const DeviceInfo&, const TunedFor& asked) -> std::optional<TunedChoice> {
+        if (asked.torus) return {};
+        return TunedChoice{{4, 2, 0, 8, 2, 1, 96}, "FILE, DATE"};
+    });
+    const KernelChoice tuned = chosen({}, device, what);
+    CHECK(tuned.origin == "FILE, DATE");
+    CHECK((tuned.lanes == 4 && tuned.group_size == 2 && !tuned.local_words));
+    CHECK(tuned.more == KernelTuning{8, 2, 1, 96});
+    CHECK(chosen({}, device, {.torus = true}).origin == "defaults");
+    KernelChoice named;
+    named.group_size = 3;
+    const KernelChoice options = chosen(named, device, what);
+    CHECK(options.origin == "options");
+    CHECK((options.lanes == 16 && options.group_size == 3 && options.local_words));
+    CHECK(options.more == KernelTuning{});
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,68 @@
+"""AMD's CUs: clang makes machine code and says what it takes.
+
+Registers are the vector registers of a work-item, at most 512; spills those kept in memory; scalar registers are kept in lanes of vector
+ones. Each of a CU's four SIMDs has 512 vector registers, handed out by 8, 800 scalar ones, by 16, and 8 waves; 64 KB, 16 groups of more than
+one wave (LLVM, AMDGPUBaseInfo.cpp). What the code says of itself is what -Rpass-analysis=kernel-resource-usage prints.
+"""
+import re
+
+from gpu.figures import Core, Fault, Figures, first_line, kernel_name, rounded_up
+
+CORES = {"gfx90a": Core(32, 16, 64 * 1024, 64 * 1024, 512, lone_groups=32)}
+LIBRARY = "amdgcn--amdhsa.bc"
+MUST_NOT = {"double precision": re.compile(r"^\s*v_\w+_f64\b", re.M),
+            "does not round to nearest": re.compile(r"\.amdhsa_float_round_mode_32 [^0]"),
+            "denormals are flushed": re.compile(r"\.amdhsa_float_denorm_mode_32 [^3]")}
+CALL = re.compile(r"^\s*s_swappc_b64\b", re.M)
+SYMBOL = re.compile(r"\b([A-Za-z_]\w*)@(?:gotpcrel|rel)32")
+
+
+def faults_of(text):
+    said = [f"{what}: {first_line(text, pattern)}" for what, pattern in MUST_NOT.items() if pattern.search(text)]
+    unresolved = sorted({name for name in SYMBOL.findall(text) if not re.search(rf"^{re.escape(name)}:", text, re.M)})
+    return said + [f"unresolved: {name}" for name in unresolved]
+
+
+def waves_of(vector, scalar):
+    """That the registers of a CU are enough for."""
+    return 4 * min(8, 512 // rounded_up(max(vector, 1), 8), 800 // rounded_up(max(scalar, 1), 16))
+
+
+class Amd:
+    targets = list(CORES)
+
+    def __init__(self, clang):
+        self.clang = clang
+
+    def lacking(self):
+        return self.clang.lacking(LIBRARY)
+
+    def version(self):
+        return self.clang.version(LIBRARY)
+
+    @staticmethod
+    def together(targets):
+        return [[target] for target in targets]
+
+    def look(self, folder, build, targets):
+        """Figures and faults of the build's kernels for those of its targets."""
+        figures, faults = [], []
+        for target in targets:
+            text, error = self.clang.assembly(folder, build, LIBRARY,
+                                              ["-target", "amdgcn-amd-amdhsa", f"-mcpu={target}"])
+            said = [f"does not build: {error}"] if error else faults_of(text)
+            faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in said]
+            figures += [] if error else self.figures(build, target, text)
+        return figures, faults
+
+    @staticmethod
+    def figures(build, target, text):
+        listed = text.split("amdhsa.kernels:", 1)[1]
+        for kernel in re.split(r"^  - \.agpr_count:", listed, flags=re.M)[1:]:
+            value = {key: int(number) for key, number in re.findall(r"^    \.(\w+): +(\d+)$", kernel, re.M)}
+            group = re.search(r"\.reqd_workgroup_size:\s+- (\d+)", kernel)
+            found = Figures(kernel_name(build, re.search(r"^    \.name: +(\w+)", kernel, re.M)[1]), build["variant"], target,
+                            value["wavefront_size"], int(group[1]) if group else build["group"], value["vgpr_count"],
+                            value["vgpr_spill_count"], value["private_segment_fixed_size"], value["group_segment_fixed_size"],
+                            value["sgpr_spill_count"], len(CALL.findall(text)))
+            yield CORES[target].fit(found, waves_of(found.registers, value["sgpr_count"]))

@@ -1,0 +1,100 @@
+"""Intel's Xe cores: ocloc is the compiler of Intel's own driver.
+
+A thread has 128 registers, or 256 and then half as many threads fit; the compiler chooses its width, 8, 16 or 32 work-items, narrower where
+registers run out. Spills are registers, as it tells them. An Xe core has 128 threads (dg2: 16 engines of 8) or 64 (pvc: 8 of 8) and 128 KB;
+how many groups at most is not known here, so that threads alone bound them (oneAPI GPU Optimization Guide, Intel Xe GPU Architecture).
+"""
+import re, shutil, struct, subprocess, tempfile
+from pathlib import Path
+
+from gpu.clang import first_error
+from gpu.figures import Core, Fault, Figures, kernel_name
+
+KB = 1024
+CORES = {"dg2": Core(128, 128, 128 * KB, 64 * KB, KB), "pvc": Core(64, 64, 128 * KB, 128 * KB, KB)}
+SPILLED = re.compile(r"kernel (\w+)\s+compiled SIMD\d+ allocated \d+ regs and spilled around (\d+)")
+
+
+class Intel:
+    targets = list(CORES)
+
+    def lacking(self):
+        return [] if shutil.which("ocloc") else ["ocloc (Debian: intel-opencl-icd)"]
+
+    def version(self):
+        with tempfile.TemporaryDirectory() as folder:  # it writes a file where it stands
+            subprocess.run(["ocloc", "query", "OCL_DRIVER_VERSION"], cwd=folder, capture_output=True)
+            told = Path(folder, "OCL_DRIVER_VERSION")
+            return "ocloc " + (told.read_text().strip("\0\n ") if told.exists() else "unknown")
+
+    @staticmethod
+    def together(targets):
+        return [[target] for target in targets]  # the compiler takes one after another
+
+    def look(self, folder, build, targets):
+        """Figures and faults of the build's kernels for those of its targets."""
+        figures, faults = [], []
+        for target in targets:
+            to = folder / target / build["source"]
+            done = subprocess.run(["ocloc", "compile", "--format", "zebin", "-file", str(folder / build["source"]),
+                                   "-device", target, "-options", " ".join(build["options"]), "-out_dir", str(to)],
+                                  capture_output=True, text=True)
+            said = done.stdout + done.stderr
+            made = [next(to.glob(f"*.{end}"), None) for end in ("bin", "spv")] if done.returncode == 0 else [None]
+            if not all(made):
+                told = [f"does not build: {first_error(said)}"]
+            else:
+                about = section(made[0].read_bytes(), ".ze_info")
+                told = faults_of(made[1].read_bytes())
+                figures += self.figures(build, target, about, dict(SPILLED.findall(said)))
+            faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in told]
+        return figures, faults
+
+    @staticmethod
+    def figures(build, target, about, spilled):
+        listed = about.split("kernels_misc_info:")[0]
+        for kernel in re.split(r"^  - name: +", listed, flags=re.M)[1:]:
+            value = {key: int(number) for key, number in re.findall(r"^      (\w+): +(\d+)$", kernel, re.M)}
+            function, group = kernel.split()[0], re.search(r"required_work_group_size: \[ (\d+)", kernel)
+            simd = value["simd_size"]
+            found = Figures(kernel_name(build, function), build["variant"], target, simd, int(group[1]) if group else build["group"],
+                            value["grf_count"], int(spilled.get(function, 0)), stack_of(kernel, simd), value.get("slm_size", 0),
+                            calls=int("has_stack_calls: true" in kernel))
+            yield CORES[target].fit(found, CORES[target].warps * 128 // found.registers)
+
+
+def stack_of(kernel, simd):
+    """Bytes of a work-item, from the memories that the compiler asks for: each of a thread, unless it says of a work-item."""
+    bytes_of_item = 0
+    for memory in re.split(r"^      - type:", kernel.split("per_thread_memory_buffers:")[-1], flags=re.M)[1:]:
+        size = re.search(r"^        size: +(\d+)", memory, re.M)
+        if size and "spill_fill_space" not in memory:
+            bytes_of_item += int(size[1]) // (1 if "is_simt_thread:  true" in memory else simd)
+    return bytes_of_item
+
+
+def section(elf, name):
+    """The text of a section of a 64-bit ELF file."""
+    start, = struct.unpack_from("<Q", elf, 0x28)
+    size, count, names_at = struct.unpack_from("<HHH", elf, 0x3A)
+    headers = [struct.unpack_from("<IIQQQQ", elf, start + i * size) for i in range(count)]
+    names = elf[headers[names_at][4]:][:headers[names_at][5]]
+    for header in headers:
+        if names[header[0]:].split(b"\0")[0] == name.encode():
+            return elf[header[4]:header[4] + header[5]].decode()
+    raise ValueError(f"no {name} in ocloc's binary")
+
+
+def faults_of(code):
+    """Double precision, and functions that nobody defines, in a SPIR-V module."""
+    words = struct.unpack(f"<{len(code) // 4}I", code)
+    at, said = 5, []
+    while at < len(words):
+        length, operation = words[at] >> 16, words[at] & 0xFFFF
+        if operation == 22 and words[at + 2] == 64:  # OpTypeFloat
+            said.append("double precision: OpTypeFloat 64")
+        if operation == 71 and words[at + 2] == 41 and words[at + length - 1] == 1:  # OpDecorate, LinkageAttributes, Import
+            name = code[4 * (at + 3):4 * (at + length - 1)].split(b"\0")[0].decode()
+            said += [] if name.startswith("__spirv_BuiltIn") else [f"unresolved: {name}"]
+        at += length
+    return said

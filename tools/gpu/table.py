@@ -1,0 +1,65 @@
+"""Figures as tables: a row for each kernel and variant, a column for each target."""
+import sys
+
+from gpu import figures
+
+LEGEND = """A cell: registers of a work-item (r); what spills, if anything does (sp; of AMD's scalar registers ssp); stack of a work-item in bytes
+(B); calls left in the kernel's file, if there are any (c); warps that fit in a core with the group's size that is told (w), and up to how
+much local memory of each group, in KB. On Intel's the width of a thread comes first, since registers are always 128 or 256."""
+CORE = {"sm_80": "A100, SM: 64 warps of 32", "sm_90": "H100, SM: 64 warps of 32", "gfx90a": "MI200, CU: 32 waves of 64",
+        "dg2": "Arc, Xe core: 128 threads of 8, 16 or 32", "pvc": "Max, Xe core: 64 threads of 16 or 32"}
+
+
+def cell(f):
+    registers = f"x{f.width} {f.registers}r" if f.target in ("dg2", "pvc") else f"{f.registers}r"
+    spills = (f" {f.spills}sp" if f.spills else "") + (f" {f.scalar_spills}ssp" if f.scalar_spills else "")
+    calls = f" {f.calls}c" if f.calls else ""
+    return f"{registers}{spills} {f.stack}B{calls} {f.warps}w/{f.local_left // 1024}K"
+
+
+def rows(all_figures, targets):
+    """Lists of cells, the head first, in the order of the figures."""
+    by_name = {f.name: f for f in all_figures}
+    kernels = dict.fromkeys((f.kernel, f.variant, f.group) for f in all_figures)
+    found = [["kernel", "variant", "group", *targets]]
+    for kernel, variant, group in kernels:
+        of_targets = [by_name.get((kernel, variant, target)) for target in targets]
+        found.append([kernel, variant, str(group), *[cell(f) if f else "-" for f in of_targets]])
+    return found
+
+
+def aligned(cells):
+    widths = [max(len(row[i]) for row in cells) for i in range(len(cells[0]))]
+    return "".join("  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() + "\n" for row in cells)
+
+
+def markdown(cells):
+    return "".join("| " + " | ".join(row) + " |\n" for row in [cells[0], ["---"] * len(cells[0]), *cells[1:]])
+
+
+def page(cells, versions, vendors):
+    """docs/gpu_resources.md. The modules' own words say how figures are made."""
+    words = {vendor: sys.modules[type(vendor).__module__].__doc__.strip().split("\n\n") for vendor, _ in vendors}
+    made = "".join(f"| {target} | {CORE[target]} | {version} |\n" for target, version in versions.items())
+    about = "".join(f"**{', '.join(vendor.targets)}.** {' '.join(text)}\n\n" for vendor, text in words.items())
+    return f"""# What kernels take of GPUs
+
+Written by `tools/gpu_check --write`, which compiles the kernels for GPUs on a machine that has none, as raya builds them there
+(`host/kernels/kernel_options.cpp`), and holds them against `tests/portability/gpu_budget.csv`. For NVIDIA and AMD clang and libclc stand in
+for the compilers of their drivers, which may come to other figures; ocloc is Intel's own.
+
+| target | core | compilers |
+| --- | --- | --- |
+{made}
+## How many warps fit
+
+{figures.__doc__.strip()}
+
+{about}## Kernels
+
+{LEGEND}
+
+Variants: `spheres`, a scene of spheres and planes alone; `grid`, `bvh`, with what rays walk through, in global memory; `costs`, torus nodes
+tell what packets cost; `refined`, for a device that lacks correctly rounded division or `fma`; `any`, kernels that compute nothing.
+
+{markdown(cells)}"""
