@@ -54,13 +54,18 @@ void RingRenderer::bring(std::vector<T>& own, std::size_t of_pe, const Take& tak
     }
 }
 
+// Memory for the next pixels, whose first use is slow: of the image, and where those of the last range were until they
+// are placed.
+void RingRenderer::make_room(RingResult& result) {
+    const StepLog::Step step = session_.step("make room");
+    if (result.image.rgb.empty() && ranks_.first()) result.image = black(settings_.mapping);
+    place_gathered(result);
+    gathered_.resize(pixels_.size());
+}
+
 void RingRenderer::gather(PixelRange range, RingResult& result) {
     const StepLog::Step step = session_.step("gather");
     const raya_mapping& m = settings_.mapping;
-    session_.flush();  // the device traces while the host takes memory, whose first use is slow, or places pixels
-    if (result.image.rgb.empty() && ranks_.first()) result.image = black(m);
-    place_gathered(result);
-    gathered_.resize(pixels_.size());
     std::uint64_t owned = 0;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
         const std::uint32_t share = raya_share_size(raya_share_of(m, pe));

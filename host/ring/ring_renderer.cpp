@@ -119,7 +119,7 @@ void RingRenderer::render_block(std::uint32_t block, RingResult& result, const P
     bus_.begin_gather();
     for (std::uint32_t window = block; window < end; window += window_) {
         const PixelRange range{window, window, std::min(end, window + window_)};
-        trace(range, progress);
+        trace(range, result, progress);
         if (filter_) filter_->apply(pixels_, *exchange_);
         if (contrast_) supersample(progress);
         gather(range, result);
@@ -143,7 +143,7 @@ void RingRenderer::prepare(RingResult& result) {
     }
 }
 
-void RingRenderer::trace(PixelRange range, const ProgressCallback& progress) {
+void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCallback& progress) {
     const StepLog::Step step = session_.step(kTracePass);
     const double passes = static_cast<double>(counters_.size());
     const auto report = [&](double done) {
@@ -151,7 +151,7 @@ void RingRenderer::trace(PixelRange range, const ProgressCallback& progress) {
         if (progress) progress((range.begin + done * (range.end - range.begin)) / share_ / passes);
     };
     tracer_->trace(kTracePass, broadcast_, range, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
-                   progress || listens() ? report : ProgressCallback{});
+                   progress || listens() ? report : ProgressCallback{}, [&] { make_room(result); });
 }
 
 void RingRenderer::supersample(const ProgressCallback& progress) {

@@ -40,8 +40,9 @@ class RingRenderer {
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
     void render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress);
-    void trace(PixelRange range, const ProgressCallback& progress);
+    void trace(PixelRange range, RingResult& result, const ProgressCallback& progress);
     void supersample(const ProgressCallback& progress);
+    void make_room(RingResult& result);
     void gather(PixelRange range, RingResult& result);
     void place_gathered(RingResult& result);
     void place(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;

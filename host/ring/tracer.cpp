@@ -56,19 +56,23 @@ void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t
 
 void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-                   const ProgressCallback& progress) {
+                   const ProgressCallback& progress, const std::function<void()>& meanwhile) {
     const double aim = progress ? 0.5 : 1.0;  // seconds
     std::uint32_t work = progress ? work_.watched : work_.first;
     begin(label, range.begin);
-    for (bool done = false; !done;) {
+    for (bool first = true, done = false; !done; first = false) {
         const Clock::time_point start = Clock::now();
         launch(label, job, range, points, work, marks, pixels, counters);
+        if (first && meanwhile) {
+            session_.flush();
+            meanwhile();
+        }
         const Standing standing = look(label);
         done = standing.done;
         work = next_work(work, work_.most, std::chrono::duration<double>(Clock::now() - start).count(), aim);
         if (!progress) continue;
-        const double all = 1.0 * pes_.count * (range.end - range.begin), first = 1.0 * pes_.count * range.begin;
-        progress(done ? 1.0 : (static_cast<double>(standing.taken) - first) / all);
+        const double all = 1.0 * pes_.count * (range.end - range.begin), begun = 1.0 * pes_.count * range.begin;
+        progress(done ? 1.0 : (static_cast<double>(standing.taken) - begun) / all);
     }
 }
 
