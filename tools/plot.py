@@ -5,7 +5,7 @@
 
 `raya study` holds this script within itself and does the same after each study. The same file gives the same bytes
 under the same matplotlib. An SVG says in words what it shows and holds the figures of its points, for the document of
-all studies (host/study/html_figure.hpp, host/study/document/script.js). All plots of a file appear, each whole, or none
+all studies (host/study/html_figure.hpp, host/study/document/plots.js). All plots of a file appear, each whole, or none
 does. Exit code 1: a file cannot be drawn, with the reason; 3: no matplotlib.
 """
 import sys

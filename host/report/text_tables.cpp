@@ -33,7 +33,7 @@ Json json_number(double value) {
     return fmt::format("{}", value);
 }
 
-std::string markdown_table(const std::vector<std::vector<std::string>>& rows) {
+std::string markdown_table(const TextCells& rows) {
     std::string text;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         text += '|';

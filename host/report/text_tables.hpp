@@ -7,6 +7,9 @@
 
 namespace raya {
 
+/// Rows of cells, the first the header; empty where there is nothing to show.
+using TextCells = std::vector<std::vector<std::string>>;
+
 /// `text` with every `what` in it replaced by `by`.
 std::string replaced(std::string text, const std::string& what, const std::string& by);
 
@@ -17,6 +20,6 @@ std::string csv_field(const std::string& text);
 Json json_number(double value);
 
 /// The first row is the header. Bars in cells are escaped and line ends become spaces, so that the table stays whole.
-std::string markdown_table(const std::vector<std::vector<std::string>>& rows);
+std::string markdown_table(const TextCells& rows);
 
 }  // namespace raya

@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
-#include "host/embedded.hpp"
 #include "host/files/read_file.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/page/html.hpp"
+#include "host/page/html_document.hpp"
 #include "host/study/conclusion.hpp"
-#include "host/study/html.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/references.hpp"
 #include "host/study/rows.hpp"
@@ -15,18 +15,6 @@ namespace raya {
 namespace {
 
 using Pages = std::span<const StudyPage>;
-
-// The policy holds the document to its word: a browser refuses whatever it would have to fetch.
-constexpr const char* kHead = R"(<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'">
-)";
-
-std::string asset(const std::string& name) { return embedded_files().at("host/study/document/" + name); }
 
 std::string link_to(const StudyPage& page) {
     return fmt::format("<a href=\"#{}\">{}</a>", html_text(page.name), html_prose(page.title));
@@ -105,16 +93,18 @@ PageFiles files_of(const std::filesystem::path& folder, const StudyPage& page, c
 
 std::string document_html(Pages pages, const std::vector<PageFiles>& files) {
     const StudyPage about = page_about("laboratory", {});
-    const std::string title = (pages.size() > 1 ? "" : html_text(pages.front().title) + " - ") + html_text(about.title);
+    const std::string title = (pages.size() > 1 ? "" : pages.front().title + " - ") + about.title;
     std::string body = part("asked", "What was asked",
                             "<p>" + html_prose(about.question) + "</p>\n" + html_list(about.method) + run_html(pages));
     body += part("conclusion", "Conclusion", conclusion_html(pages));
     body += part("claims", "Every claim", claims_html(pages));
     for (std::size_t i = 0; i < pages.size(); ++i) body += page_html(pages[i], files.at(i));
     body += part("references", "References", references_html(body));
-    return kHead + fmt::format("<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n", title, asset("style.css")) +
-           fmt::format("<header><h1>{}</h1></header>\n", html_text(about.title)) + contents_html(pages) + "<main>\n" +
-           body + "</main>\n<script>\n" + asset("script.js") + "</script>\n</body>\n</html>\n";
+    return html_document({title,
+                          fmt::format("<header><h1>{}</h1></header>\n", html_text(about.title)) + contents_html(pages) +
+                              "<main>\n" + body + "</main>\n",
+                          {"host/study/document/style.css"},
+                          {"host/page/assets/tables.js", "host/study/document/plots.js"}});
 }
 
 void write_document(const std::filesystem::path& folder, Pages pages, const std::vector<PlotOutcome>& plots) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "host/files/base64.hpp"
-#include "host/study/html.hpp"
+#include "host/page/html.hpp"
+#include "host/study/page_text.hpp"
 
 namespace raya {
 namespace {
@@ -53,13 +53,6 @@ std::string html_figure(const StudyPlot& plot, const std::string& file, const st
     text += html_cut_table({plot.title + ": points", html_cells(points)},
                            fmt::format("With all digits: <a href=\"{0}\">{0}</a>.", html_text(json)));
     return text + "</details>\n</figure>\n";
-}
-
-std::string html_picture(const StudyPicture& picture) {
-    return fmt::format(
-        "<figure>\n<img class=\"picture\" alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
-        "<figcaption>{}</figcaption>\n</figure>\n",
-        html_text(picture.words), base64(picture.png), html_prose(picture.title));
 }
 
 }  // namespace raya

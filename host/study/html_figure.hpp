@@ -16,7 +16,4 @@ std::string inlined_svg(const std::string& file);
 std::string html_figure(const StudyPlot& plot, const std::string& file, const std::string& missing,
                         const std::string& json);
 
-/// The picture itself within the document.
-std::string html_picture(const StudyPicture& picture);
-
 }  // namespace raya

@@ -2,8 +2,9 @@
 
 #include <fmt/core.h>
 
-#include "host/study/html.hpp"
+#include "host/page/html.hpp"
 #include "host/study/html_figure.hpp"
+#include "host/study/page_text.hpp"
 #include "host/study/rows.hpp"
 
 namespace raya {
@@ -24,6 +25,10 @@ std::string comparisons_html(const StudyPage& page) {
 std::string table_html(const StudyTable& table) {
     const std::string rest = "With all digits: " + link_to(table.name + ".csv") + '.';
     return html_section(table.title, html_folded_table({table.title, html_cells(table_cells(table))}, rest));
+}
+
+std::string picture_html(const StudyPicture& picture) {
+    return html_picture({picture.title, picture.words, picture.png});
 }
 
 std::string figures_html(const StudyPage& page, const PageFiles& files) {
@@ -61,7 +66,7 @@ std::string page_html(const StudyPage& page, const PageFiles& files) {
     html += html_section("What is seen", html_list(page.findings));
     html += html_section("What the papers say", claims_html(page));
     html += html_section(comparison_title(page), comparisons_html(page));
-    html += joined(page.pictures, "", html_picture) + figures_html(page, files);
+    html += joined(page.pictures, "", picture_html) + figures_html(page, files);
     for (const StudyTable& table : page.tables) html += table_html(table);
     html += html_section("What is new", html_list(page.news));
     html += html_section("How to repeat it", repeat_html(page));

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "host/report/text_tables.hpp"
 #include "host/study/page.hpp"
 
 namespace raya {
@@ -16,9 +17,6 @@ std::string shown_text(const Cell& cell);
 std::optional<double> ratio_of(const Comparison& comparison);
 
 const char* verdict_text(ClaimVerdict verdict);
-
-/// Rows of cells, the first the header; empty where there is nothing to show.
-using TextCells = std::vector<std::vector<std::string>>;
 
 /// Under the name of the paper; without its columns where no row has a figure of it.
 TextCells comparison_cells(const StudyPage& page);

@@ -8,77 +8,13 @@ the checks are tried on faults.
                                                          a document of one's own, no faults; screenshots for a person to look at
 Exit code 77 where there is no Chromium.
 """
-import argparse, json, subprocess, sys, tempfile
+import argparse, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
+from page_checks import LOOK, told
 
 WIDTHS = (400, 1000, 1600)
-
-# What a browser finds in the page, as a list of complaints. In a drawing, text is set with fill; its ground is the document's.
-LOOK = r"""(() => {
-  const wrong = [];
-  const seen = (e) => e.checkVisibility() && e.getClientRects().length > 0;
-  const say = (what, e) => wrong.push(`${what}: ${(e.textContent || e.outerHTML).trim().slice(0, 60)}`);
-
-  const ids = [...document.querySelectorAll("[id]")].map((e) => e.id);
-  ids.filter((id, i) => ids.indexOf(id) !== i).forEach((id) => wrong.push("an id twice: " + id));
-  for (const a of document.querySelectorAll("a[href^='#']"))
-    if (!document.getElementById(a.getAttribute("href").slice(1))) say("a link to nowhere", a);
-  for (const e of document.querySelectorAll("*"))
-    for (const {name, value} of e.attributes)
-      if (name.startsWith("on") || (/href|src/.test(name) && /^[a-z]+:/i.test(value) && !value.startsWith("data:")))
-        wrong.push(`attribute ${name}="${value.slice(0, 60)}"`);
-
-  const figures = [...document.querySelectorAll("figure.plot")];
-  for (const figure of figures) {
-    const svg = figure.querySelector("svg");
-    if (!svg) { if (!figure.querySelector(".missing")) say("a figure without a drawing", figure); continue; }
-    const box = svg.getBoundingClientRect();
-    if (box.width < 300 || box.height < 150) say(`a drawing of ${box.width} x ${box.height}`, figure);
-    const ink = [...svg.querySelectorAll("path, use, text")].filter((e) => e.getBoundingClientRect().width > 0);
-    if (ink.length < 20 || svg.querySelectorAll("text").length < 3) say("an empty drawing", figure);
-    const words = (name) => (svg.getAttribute(name) || "").split(" ").map((id) => document.getElementById(id)?.textContent || "").join(" ");
-    if (svg.getAttribute("role") !== "img") say("a drawing that is no image to those who do not see", figure);
-    if (!(svg.getAttribute("aria-label") || words("aria-labelledby")).trim()) say("a drawing without a name", figure);
-    if (!/Across: .+ Up: .+ Series: .+/s.test(words("aria-describedby"))) say("a drawing without a description", figure);
-  }
-  for (const img of document.querySelectorAll("img"))
-    if (!img.alt.trim() || !img.complete || img.naturalWidth === 0) say("a picture without words or pixels", img);
-
-  const canvas = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
-  const rgb = (colour) => {
-    canvas.clearRect(0, 0, 1, 1);
-    canvas.fillStyle = colour;
-    canvas.fillRect(0, 0, 1, 1);
-    const [r, g, b, a] = canvas.getImageData(0, 0, 1, 1).data;
-    return {rgb: [r, g, b], a};
-  };
-  const light = ({rgb}) => rgb.map((v) => v / 255).map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
-      .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
-  const contrast = (a, b) => (Math.max(light(a), light(b)) + 0.05) / (Math.min(light(a), light(b)) + 0.05);
-  const ground = (e) => {
-    for (; e; e = e.parentElement) {
-      const colour = rgb(getComputedStyle(e).backgroundColor);
-      if (colour.a === 255) return colour;
-    }
-    return rgb("white");
-  };
-  let texts = 0;
-  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  while (walker.nextNode()) {
-    const e = walker.currentNode.parentElement;
-    if (!walker.currentNode.data.trim() || !seen(e) || e.closest("script, style")) continue;
-    ++texts;
-    const svg = e.closest("svg"), style = getComputedStyle(e);
-    const behind = svg ? rgb(getComputedStyle(svg.querySelector("path")).fill) : ground(e);
-    const ratio = contrast(rgb(svg ? style.fill : style.color), behind);
-    if (ratio < 4.5) say(`a contrast of ${ratio.toFixed(2)}`, e);
-  }
-  const wide = document.scrollingElement.scrollWidth;
-  if (wide > innerWidth) wrong.push(`a page of ${wide} pixels in a window of ${innerWidth}`);
-  return {wrong: [...new Set(wrong)], texts, figures: figures.length, title: document.title, buttons: document.querySelectorAll("th button").length};
-})()"""
 
 # Every column, rising and falling: whether rows come in order. Numbers are read as in the table's column class.
 SORT = r"""(() => {
@@ -119,21 +55,6 @@ TIP = r"""((number) => {
   return {shown: tip.checkVisibility() && mark.checkVisibility(), words: tip.textContent,
           inside: box.left >= around.left - 1 && box.right <= around.right + 1 && box.top >= around.top - 1 && box.bottom <= around.bottom + 1};
 })"""
-
-
-def told(page):
-    """What reached the network or the console."""
-    for method, what in page.events:
-        if method == "Network.requestWillBeSent":
-            url = what["request"]["url"]
-            if not url.startswith("data:") and what.get("type") != "Document":
-                yield "a request: " + url
-        elif method == "Runtime.exceptionThrown":
-            yield "an exception: " + what["exceptionDetails"].get("exception", {}).get("description", "")[:200]
-        elif method == "Runtime.consoleAPICalled":
-            yield "in the console: " + json.dumps(what["args"])[:200]
-        elif method == "Log.entryAdded":
-            yield "in the log: " + what["entry"]["text"][:200]
 
 
 def hovering(page):

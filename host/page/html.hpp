@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/study/page_text.hpp"
+#include "host/report/text_tables.hpp"
 
 namespace raya {
 
@@ -38,5 +38,14 @@ std::string html_cut_table(const HtmlTable& table, const std::string& rest);
 
 /// The same, folded away where it is more than a reader takes in at a glance.
 std::string html_folded_table(const HtmlTable& table, const std::string& rest);
+
+struct HtmlPicture {
+    std::string title;  // a line
+    std::string words;  // what is seen, for those who do not see it
+    std::string png;    // the file's bytes
+};
+
+/// The picture itself within the page, as a figure.
+std::string html_picture(const HtmlPicture& picture);
 
 }  // namespace raya

@@ -1,8 +1,8 @@
 // What HTML is made of: escaping, sentences, tables.
 #include <catch2/catch.hpp>
 
-#include "host/study/html.hpp"
-#include "host/study/html_figure.hpp"
+#include "host/page/html.hpp"
+#include "host/page/html_document.hpp"
 
 namespace raya {
 namespace {
@@ -63,14 +63,22 @@ TEST_CASE("long tables are folded, longer ones cut, and both say where the rest 
     CHECK(count_of(most, "<tr>") == 401);
 }
 
-TEST_CASE("a drawing comes in without its head, in colours that may change", "[html]") {
-    CHECK(
-        inlined_svg("<?xml?><!DOCTYPE svg>\n<svg a=\"b\"><g style=\"fill: #0072b2; stroke: #ffffff\" href=\"#abcdef\" "
-                    "clip-path=\"url(#abcdef)\"/>: #12 </svg>\n") ==
-        "<svg a=\"b\"><g style=\"fill: var(--plot-0072b2, #0072b2); stroke: var(--plot-ffffff, #ffffff)\" "
-        "href=\"#abcdef\" clip-path=\"url(#abcdef)\"/>: #12 </svg>\n");
-    CHECK(inlined_svg("no drawing") == "");
-    CHECK(inlined_svg("<svg> cut off") == "");
+TEST_CASE("a picture is within the page, with words for those who do not see it", "[html]") {
+    CHECK(html_picture({"A `b`", "c \"d\"", "\x89PNG"}) ==
+          "<figure>\n<img class=\"picture\" alt=\"c &quot;d&quot;\" src=\"data:image/png;base64,iVBORw==\">\n"
+          "<figcaption>A <code>b</code></figcaption>\n</figure>\n");
+}
+
+TEST_CASE("a page has its title, styles before its body, scripts after it, and may fetch nothing", "[html]") {
+    const std::string html = html_document(
+        {"<a> & b", "<main>c</main>\n", {"host/study/document/style.css"}, {"host/page/assets/tables.js"}});
+    CHECK_THAT(html, StartsWith("<!doctype html>"));
+    CHECK_THAT(html, Contains("default-src 'none'") && Contains("<title>&lt;a&gt; &amp; b</title>"));
+    const std::size_t base = html.find("What all pages have"), own = html.find("What the studies' document has"),
+                      body = html.find("<main>c</main>"), script = html.find("<script>");
+    CHECK((base < own && own < body && body < script && script != std::string::npos));
+    CHECK(count_of(html, "</script>") == 1);
+    CHECK_THROWS_AS(html_document({"a", "", {"no such file"}}), std::out_of_range);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
-#include "host/study/html.hpp"
+#include "host/page/html.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdlib>
 
+#include "host/files/base64.hpp"
 #include "host/report/text_tables.hpp"
-#include "host/study/rows.hpp"
 
 namespace raya {
 namespace {
@@ -71,8 +71,9 @@ std::string html_prose(const std::string& text) {
 
 std::string html_list(const std::vector<std::string>& sentences) {
     if (sentences.empty()) return {};
-    const auto item = [](const std::string& sentence) { return "<li>" + html_prose(sentence) + "</li>\n"; };
-    return "<ul>\n" + joined(sentences, "", item) + "</ul>\n";
+    std::string items;
+    for (const std::string& sentence : sentences) items += "<li>" + html_prose(sentence) + "</li>\n";
+    return "<ul>\n" + items + "</ul>\n";
 }
 
 std::string html_section(const std::string& title, const std::string& html) {
@@ -111,6 +112,13 @@ std::string html_folded_table(const HtmlTable& table, const std::string& rest) {
     const std::size_t rows = rows_of(table);
     if (rows <= kOpenRows) return text;
     return fmt::format("<details><summary>{} rows</summary>\n{}</details>\n", rows, text);
+}
+
+std::string html_picture(const HtmlPicture& picture) {
+    return fmt::format(
+        "<figure>\n<img class=\"picture\" alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
+        "<figcaption>{}</figcaption>\n</figure>\n",
+        html_text(picture.words), base64(picture.png), html_prose(picture.title));
 }
 
 }  // namespace raya
