@@ -123,7 +123,7 @@ TEST_CASE("a script in a scene's name is text, wherever the name comes to stand"
     const PageFiles missing{{false, bad}};
     for (const std::vector<StudyPage>& pages : {std::vector{page}, std::vector{page, page}}) {
         const std::string html = document_html(pages, {missing, missing});
-        CHECK(count_of(html, "<script") == 1);
+        CHECK(count_of(html, "<script") == 2);
         CHECK(count_of(html, "\" onload") == 0);
         CHECK(count_of(html, "&lt;script&gt;alert(1)&lt;/script&gt;&quot; onload=&#39;x&#39;") > 20);
     }
