@@ -66,55 +66,68 @@ Verdict check_bus(Session& session) {
     return passed(fmt::format("{} words each way", words.size()));
 }
 
-// Every PE's block has words of its own in each round, and comes from the middle of its memory.
+// Where word `w` of the blocks [PE][kRows][words] is in the PEs' own memory [PE][kRows][pitch], `distance` PEs further
+// up, if blocks begin at word `offset` of each row.
+constexpr std::size_t kRows = 3;
+struct OwnWords {
+    std::size_t pes, words, pitch, offset;
+
+    std::size_t at(std::size_t w, std::size_t distance) const {
+        const std::size_t pe = w / words / kRows, row = w / words % kRows;
+        return ((pe + distance) % pes * kRows + row) * pitch + offset + w % words;
+    }
+    std::size_t size() const { return pes * kRows * pitch; }
+};
+
+// Every PE's block has words of its own in each round, and comes from the middle of its rows.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, static_cast<std::uint32_t>(pes));
-    const std::size_t pitch = words + 3, offset = 2;
-    auto memory = session.buffer<float>("own words", pes * pitch),
-         blocks = session.buffer<float>("blocks", pes * words);
+    const OwnWords place{pes, words, words + 3, 2};
+    auto memory = session.buffer<float>("own words", place.size()),
+         blocks = session.buffer<float>("blocks", pes * kRows * words);
     for (std::uint32_t round = 0; round < 6; ++round) {
         const bool to_all = round == 5;  // a block in its own PE's place is what all have heard
         const std::size_t distance = to_all ? 0 : 1 + round * (pes - 1) / 5;
-        const Words own = numbered(pes * pitch, round * static_cast<std::uint32_t>(pes * pitch));
+        const Words own = numbered(place.size(), round * static_cast<std::uint32_t>(place.size()));
         session.write("own words", memory, as_floats(own));
         for (std::size_t pe = 0; pe < pes; ++pe) {
-            const PeWords from{(pe + distance) % pes, pitch, offset}, to{pe, words, 0};
+            const PeWords from{(pe + distance) % pes, place.pitch, place.offset, kRows}, to{pe, words, 0, kRows};
             to_all ? bus.broadcast_from(memory, from, blocks, to, words) : bus.send(memory, from, blocks, to, words);
         }
-        Words expected;
-        for (std::size_t w = 0; w < pes * words; ++w)
-            expected.push_back(own[(w / words + distance) % pes * pitch + offset + w % words]);
+        Words expected(blocks.size());
+        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = own[place.at(w, distance)];
         std::vector<float> got(expected.size());
         session.read("blocks", blocks, got);
         const std::string what = to_all ? "broadcast" : fmt::format("distance {}", distance);
-        if (auto verdict = difference(expected, as_words(got), what, words, "PE")) return *verdict;
+        if (auto verdict = difference(expected, as_words(got), what, kRows * words, "PE")) return *verdict;
     }
-    return passed(
-        fmt::format("{} transfers and {} broadcasts of {} words", counted.transfers, counted.pe_broadcasts, words));
+    return passed(fmt::format("{} transfers and {} broadcasts of {} words", counted.transfers, counted.pe_broadcasts,
+                              kRows * words));
 }
 
 // Blocks of all PEs after a turn: PE i has what PE (i + turned) mod P had. Every turn has words of its own: with two
 // PEs, those of the turn before the last would be where these belong.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
-    Ring ring(session, counted, static_cast<std::uint32_t>(pes), words);
-    auto memory = session.buffer<float>("own words", pes * words);
+    Ring ring(session, counted, static_cast<std::uint32_t>(pes), kRows, words);
+    const OwnWords place{pes, words, words + 3, 2};
+    auto memory = session.buffer<float>("own words", place.size());
     for (std::uint32_t i = 0; i < 12; ++i) {
-        const Words own = numbered(pes * words, i * static_cast<std::uint32_t>(pes * words));
+        const Words own = numbered(place.size(), i * static_cast<std::uint32_t>(place.size()));
         session.write("own words", memory, as_floats(own));
-        ring.load(memory, words, 0);
+        ring.load(memory, place.pitch, place.offset);
         const Turn turn = i % 4 == 3 ? Turn::kUp : Turn::kDown;
         const std::size_t turned = turn == Turn::kDown ? 1 : pes - 1;
         ring.rotate(turn);
-        Words expected(own.size());
-        for (std::size_t w = 0; w < own.size(); ++w) expected[w] = own[(w / words + turned) % pes * words + w % words];
-        std::vector<float> got(own.size());
+        Words expected(pes * kRows * words);
+        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = own[place.at(w, turned)];
+        std::vector<float> got(expected.size());
         session.read("ring blocks", ring.blocks(), got);
         const std::string what = fmt::format("rotation {} of {} PEs", i + 1, pes);
-        if (auto verdict = difference(expected, as_words(got), what, words, "PE")) return *verdict;
+        if (auto verdict = difference(expected, as_words(got), what, kRows * words, "PE")) return *verdict;
     }
-    return passed(fmt::format("12 rotations of {} blocks of {} words", pes, words));
+    return passed(fmt::format("12 rotations of {} blocks of {} words", pes, kRows * words));
 }
 
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every) {

@@ -17,7 +17,7 @@ class RingContrast {
     /// takes the device memory. `threshold` is a number of the format, 0..1.
     RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold);
 
-    /// Marks the pixels of `pixels`, [PE][capacity][3].
+    /// Marks the pixels of `pixels`, [PE][3][capacity].
     void apply(const Buffer<float>& pixels, NeighbourExchange& exchange);
 
     /// [PE][capacity]: 1 where a pixel is marked, else 0.

@@ -18,7 +18,7 @@ class RingFilter {
     /// and takes the device memory.
     RingFilter(Kernels& kernels, const ExchangeSetup& setup);
 
-    /// Every pixel becomes the mean of its 3 x 3 neighbourhood. `pixels` is [PE][capacity][3]; afterwards it may name
+    /// Every pixel becomes the mean of its 3 x 3 neighbourhood. `pixels` is [PE][3][capacity]; afterwards it may name
     /// another buffer of that shape.
     void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
 
@@ -30,7 +30,7 @@ class RingFilter {
     ExchangeSetup setup_;
     AddNeighboursKernel add_neighbours_;
     TakeMeansKernel take_means_;
-    Buffer<float> sums_;  // [PE][capacity][3]
+    Buffer<float> sums_;  // [PE][3][capacity]
 };
 
 }  // namespace raya

@@ -5,7 +5,7 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kPixelWords = 3;
+constexpr std::size_t kColours = 3;
 
 }  // namespace
 
@@ -15,11 +15,11 @@ NeighbourExchange::NeighbourExchange(Session& session, Communication& counted, c
       capacity_(capacity),
       band_(band),
       way_(way),
-      ring_(session, counted, mapping.pes, kPixelWords * band, ranks),
+      ring_(session, counted, mapping.pes, kColours, band, ranks),
       bus_(session, counted, mapping.pes, ranks) {
     for (raya_u32 side = 0; side < RAYA_SIDES; ++side) distances_[side] = neighbour_distances(mapping, side);
     if (way == ExchangeWay::kBroadcast)
-        heard_ = session.buffer<float>("blocks that were broadcast", std::size_t{pes_} * kPixelWords * band);
+        heard_ = session.buffer<float>("blocks that were broadcast", std::size_t{pes_} * kColours * band);
 }
 
 void NeighbourExchange::visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides, const Arrived& arrived) {
@@ -35,7 +35,7 @@ void NeighbourExchange::visit(const Buffer<float>& own, std::initializer_list<ra
 // Round the ring, the shortest way past all PEs that have neighbours.
 void NeighbourExchange::turn(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived) {
     for (const Leg& leg : shortest_route(pes_, distances_[side])) {
-        load(own, begin);
+        ring_.load(own, capacity_, begin);
         std::uint32_t turns = 0;
         for (const std::uint32_t stop : leg.stops) {
             for (; turns < stop; ++turns) ring_.rotate(leg.turn);
@@ -46,12 +46,11 @@ void NeighbourExchange::turn(const Buffer<float>& own, raya_u32 side, std::uint3
 
 // From PE to PE: to each in turn from the one that is so far away.
 void NeighbourExchange::fetch(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived) {
-    const std::size_t pitch = kPixelWords * capacity_, block = kPixelWords * band_;
     for (const std::uint32_t distance : distances_[side]) {
-        if (distance == 0) load(own, begin);
+        if (distance == 0) ring_.load(own, capacity_, begin);
         for (std::size_t pe = 0; distance > 0 && pe < pes_; ++pe)
-            bus_.send(own, {(pe + distance) % pes_, pitch, kPixelWords * begin}, ring_.blocks(), {pe, block, 0},
-                      words_from(begin));
+            bus_.send(own, {(pe + distance) % pes_, capacity_, begin, kColours}, ring_.blocks(),
+                      {pe, band_, 0, kColours}, pixels_from(begin));
         arrived({ring_.blocks(), side, distance, begin});
     }
 }
@@ -59,25 +58,19 @@ void NeighbourExchange::fetch(const Buffer<float>& own, raya_u32 side, std::uint
 // From each PE in turn to all, where one of them needs what another has.
 void NeighbourExchange::hear(const Buffer<float>& own, std::initializer_list<raya_u32> sides, std::uint32_t begin,
                              const Arrived& arrived) {
-    const std::size_t pitch = kPixelWords * capacity_, block = kPixelWords * band_;
     const bool needed = std::ranges::any_of(
         sides, [&](raya_u32 side) { return !distances_[side].empty() && distances_[side].back() > 0; });
     for (std::size_t pe = 0; needed && pe < pes_; ++pe)
-        bus_.broadcast_from(own, {pe, pitch, kPixelWords * begin}, *heard_, {pe, block, 0}, words_from(begin));
+        bus_.broadcast_from(own, {pe, capacity_, begin, kColours}, *heard_, {pe, band_, 0, kColours},
+                            pixels_from(begin));
     for (const raya_u32 side : sides)
         for (const std::uint32_t distance : distances_[side]) {
-            distance == 0 ? load(own, begin) : ring_.take(*heard_, distance);
+            distance == 0 ? ring_.load(own, capacity_, begin) : ring_.take(*heard_, distance);
             arrived({ring_.blocks(), side, distance, begin});
         }
 }
 
-void NeighbourExchange::load(const Buffer<float>& own, std::uint32_t begin) {
-    ring_.load(own, kPixelWords * capacity_, kPixelWords * begin);
-}
-
 // Of a band, as many as there are.
-std::size_t NeighbourExchange::words_from(std::uint32_t begin) const {
-    return kPixelWords * std::min(band_, capacity_ - begin);
-}
+std::size_t NeighbourExchange::pixels_from(std::uint32_t begin) const { return std::min(band_, capacity_ - begin); }
 
 }  // namespace raya

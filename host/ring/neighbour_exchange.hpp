@@ -15,7 +15,7 @@ namespace raya {
 
 /// A block that has arrived in every PE.
 struct Arrival {
-    Buffer<float>& blocks;   // [PE][band][3]
+    Buffer<float>& blocks;   // [PE][3][band]
     raya_u32 side;           // on which some PE finds neighbours in it, RAYA_LEFT..RAYA_BELOW
     std::uint32_t distance;  // PE i holds words of PE (i + distance) mod P
     std::uint32_t begin;     // number in that PE's share of the block's first pixel
@@ -31,7 +31,7 @@ class NeighbourExchange {
 
     std::uint32_t band() const { return band_; }
 
-    /// Brings the pixels of all PEs, `own` as [PE][capacity][3] of those of this rank, to the PEs whose neighbours on
+    /// Brings the pixels of all PEs, `own` as [PE][3][capacity] of those of this rank, to the PEs whose neighbours on
     /// `sides` they are, and calls `arrived` for each block in which some PE finds some. Of several sides none is
     /// first: whoever needs an order asks for them one by one.
     void visit(const Buffer<float>& own, std::initializer_list<raya_u32> sides,
@@ -44,15 +44,14 @@ class NeighbourExchange {
     void fetch(const Buffer<float>& own, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
     void hear(const Buffer<float>& own, std::initializer_list<raya_u32> sides, std::uint32_t begin,
               const Arrived& arrived);
-    void load(const Buffer<float>& own, std::uint32_t begin);
-    std::size_t words_from(std::uint32_t begin) const;
+    std::size_t pixels_from(std::uint32_t begin) const;
 
     std::uint32_t pes_, capacity_, band_;
     ExchangeWay way_;
     std::array<std::vector<std::uint32_t>, RAYA_SIDES> distances_;
     Ring ring_;
     Bus bus_;
-    std::optional<Buffer<float>> heard_;  // [PE][band][3], of broadcasts of all PEs; a PE needs one block, as it takes
+    std::optional<Buffer<float>> heard_;  // [PE][3][band], of broadcasts of all PEs; a PE needs one block, as it takes
                                           // what it needs of each while it passes
 };
 

@@ -10,12 +10,11 @@
 
 namespace raya {
 
-/// Calls `move` for each pixel of a range of the share of every PE of a segment, with its number in the layout
-/// [PE][window] of the segment's device and in the image. Some PEs at a time, a run of each: where neighbours own
+/// Calls `move` for each pixel of a range of the share of every PE of a segment, with the PE's number in the segment,
+/// the pixel's in the PE's block and its number in the image. Some PEs at a time, a run of each: where neighbours own
 /// neighbouring columns, what is near in the image is moved together.
 template <class Move>
-void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, std::uint32_t window,
-                    Move&& move) {
+void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, Move&& move) {
     constexpr std::uint32_t kTogether = 16;
     for (std::uint32_t first = 0; first < segment.count; first += kTogether) {
         const std::uint32_t pes = std::min(kTogether, segment.count - first);
@@ -33,11 +32,10 @@ void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange 
             }
             for (std::uint32_t i = 0; i < pes; ++i) {
                 if (k >= raya_share_size(shares[i])) continue;
-                const std::size_t from = std::size_t{first + i} * window + (k - range.block);
                 const std::size_t row = std::size_t{runs[i].pixel.row} * m.width;
                 std::uint32_t column = runs[i].pixel.column;
                 for (std::uint32_t j = 0; j < pixels; ++j) {
-                    move(from + j, row + column);
+                    move(first + i, k - range.block + j, row + column);
                     column += runs[i].step;
                     if (column >= m.width) column -= m.width;
                 }

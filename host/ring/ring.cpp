@@ -6,20 +6,23 @@
 
 namespace raya {
 
-Ring::Ring(Session& session, Communication& counted, std::uint32_t pes, std::size_t block_words, Ranks& ranks)
+Ring::Ring(Session& session, Communication& counted, std::uint32_t pes, std::size_t rows, std::size_t row_words,
+           Ranks& ranks)
     : session_(session),
       counted_(counted),
       ranks_(ranks),
       here_(own_segment(pes, ranks)),
       pes_(pes),
-      block_words_(block_words),
-      front_(session.buffer<float>("ring blocks", here_.count * block_words)),
-      back_(session.buffer<float>("ring blocks on their way", here_.count * block_words)) {}
+      rows_(rows),
+      row_words_(row_words),
+      block_words_(rows * row_words),
+      front_(session.buffer<float>("ring blocks", here_.count * block_words_)),
+      back_(session.buffer<float>("ring blocks on their way", here_.count * block_words_)) {}
 
 void Ring::load(const Buffer<float>& own, std::size_t own_words, std::size_t begin) {
-    const std::size_t count = std::min(block_words_, own_words - begin);
-    if (count == own_words) return session_.copy("ring.load", own, 0, front_, 0, here_.count * count);
-    session_.copy_blocks("ring.load", own, {begin, own_words}, front_, {0, block_words_}, count, here_.count);
+    const std::size_t count = std::min(row_words_, own_words - begin), rows = here_.count * rows_;
+    if (count == own_words) return session_.copy("ring.load", own, 0, front_, 0, rows * count);
+    session_.copy_blocks("ring.load", own, {begin, own_words}, front_, {0, row_words_}, count, rows);
 }
 
 // What goes to another rank leaves first, so that it travels while the others are copied.

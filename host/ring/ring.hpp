@@ -16,23 +16,23 @@ namespace raya {
 /// overlap itself; a PE of the machine sends and receives word by word and needs one.
 class Ring {
   public:
-    /// `pes` blocks of `block_words` words each, both > 0, of which those of this rank's segment lie on the device;
-    /// what they hold at first is undefined. `counted` is of all ranks.
-    Ring(Session& session, Communication& counted, std::uint32_t pes, std::size_t block_words,
+    /// `pes` blocks of `rows` rows of `row_words` words each, all > 0, of which those of this rank's segment lie on the
+    /// device; what they hold at first is undefined. `counted` is of all ranks.
+    Ring(Session& session, Communication& counted, std::uint32_t pes, std::size_t rows, std::size_t row_words,
          Ranks& ranks = Ranks::alone());
 
-    /// Copies words `begin` and on of each PE's own memory, [PE][own_words], into its block: as many as fit or exist.
-    /// No transfer between PEs, so it is not counted.
+    /// Copies words `begin` and on of each row of each PE's own memory, [PE][rows][own_words], into its block: as many
+    /// as fit or exist. No transfer between PEs, so it is not counted.
     void load(const Buffer<float>& own, std::size_t own_words, std::size_t begin);
 
     /// One rotation of all blocks, wrap-around included.
     void rotate(Turn turn);
 
-    /// No transfer of the ring's: PE i takes the block of PE (i + distance) mod P out of `heard`, [PE][block_words],
-    /// which all PEs have heard over the bus: those of all ranks.
+    /// No transfer of the ring's: PE i takes the block of PE (i + distance) mod P out of `heard`,
+    /// [PE][rows][row_words], which all PEs have heard over the bus: those of all ranks.
     void take(const Buffer<float>& heard, std::size_t distance);
 
-    /// The block that each PE of the segment holds now, [PE][block_words].
+    /// The block that each PE of the segment holds now, [PE][rows][row_words].
     Buffer<float>& blocks() { return front_; }
 
   private:
@@ -47,7 +47,7 @@ class Ring {
     Communication& counted_;
     Ranks& ranks_;
     PeSegment here_;
-    std::size_t pes_, block_words_;
+    std::size_t pes_, rows_, row_words_, block_words_;
     Buffer<float> front_, back_;
     std::vector<float> leaves_, comes_;  // a block each, on its way to another rank and from one
 };

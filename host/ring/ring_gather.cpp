@@ -86,9 +86,14 @@ void RingRenderer::place_gathered(RingResult& result) {
 
 void RingRenderer::place(const PeSegment& pes, PixelRange range, std::span<const float> pixels,
                          RingResult& result) const {
-    for_each_pixel(settings_.mapping, pes, range, window_, [&](std::size_t from, std::size_t to) {
-        std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
-                    result.image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to));
+    const std::size_t window = window_;
+    const float* const colours = pixels.data();
+    float* const image = result.image.rgb.data();
+    for_each_pixel(settings_.mapping, pes, range, [=](std::size_t pe, std::size_t pixel, std::size_t to) {
+        const float* const red = colours + 3 * pe * window + pixel;
+        image[3 * to] = *red;
+        image[3 * to + 1] = red[window];
+        image[3 * to + 2] = red[2 * window];
     });
 }
 
@@ -100,9 +105,10 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
         bring(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
-            for_each_pixel(settings_.mapping, pes, range, window_, [&](std::size_t from, std::size_t to) {
-                result.phases[i].kept_cost->cycles[to] = counted[from];
-                if (counters_.size() > 1) result.all.kept_cost->cycles[to] += counted[from];
+            for_each_pixel(settings_.mapping, pes, range, [&](std::size_t pe, std::size_t pixel, std::size_t to) {
+                const std::uint64_t cost = counted[pe * window_ + pixel];
+                result.phases[i].kept_cost->cycles[to] = cost;
+                if (counters_.size() > 1) result.all.kept_cost->cycles[to] += cost;
             });
         });
     }
@@ -114,10 +120,11 @@ void RingRenderer::collect_marks(RingResult& result) {
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
     bring(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> marked) {
-        for_each_pixel(settings_.mapping, pes, {0, 0, share_}, window_, [&](std::size_t from, std::size_t to) {
-            result.recomputed += marked[from];
-            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3,
-                        static_cast<float>(marked[from]));
+        const PixelRange all{0, 0, share_};
+        for_each_pixel(settings_.mapping, pes, all, [&](std::size_t pe, std::size_t pixel, std::size_t to) {
+            const std::uint8_t mark = marked[pe * window_ + pixel];
+            result.recomputed += mark;
+            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * to), 3, static_cast<float>(mark));
         });
     });
 }

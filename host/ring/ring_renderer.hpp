@@ -67,7 +67,7 @@ class RingRenderer {
     Bus bus_;
     double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;
-    Buffer<float> pixels_;         // [PE][window][3]
+    Buffer<float> pixels_;         // [PE][3][window]
     std::vector<float> gathered_;  // on their way from there into the image: those of a range
     PixelRange gathered_range_;
     Buffer<std::uint8_t> marks_;  // what the first pass is given in place of marks

@@ -53,8 +53,8 @@ class Tracer {
 
     /// Traces `points` (RAYA_POINTS_*) of the range's pixels, of those marked only where the points are new ones. Every
     /// command is labelled `label`. `job` has been broadcast. A launch ends by itself after a bounded amount of work,
-    /// so that no watchdog ends it; launches follow until all is done. What the host has to do it does `meanwhile`, once
-    /// the device has the first of them. DeviceError where the device ends loops in silence.
+    /// so that no watchdog ends it; launches follow until all is done. What the host has to do it does `meanwhile`,
+    /// once the device has the first of them. DeviceError where the device ends loops in silence.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                const ProgressCallback& progress = {}, const std::function<void()>& meanwhile = {});

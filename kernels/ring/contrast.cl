@@ -25,8 +25,8 @@ void mark_contrasts(__global const uint* restrict broadcast,  // the job's words
                     const uint capacity,                      // pixels in a PE's memory; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0
                     const float threshold,                    // a number of the format, 0..1
-                    __global const float* restrict arrived,   // [PE][band][3]
-                    __global const float* restrict pixels,    // [PE][capacity][3]
+                    __global const float* restrict arrived,   // [PE][3][band]
+                    __global const float* restrict pixels,    // [PE][3][capacity]
                     __global uchar* restrict marks)           // [PE][capacity]: set to 1 where the pixel differs
 {
     const uint group = get_group_id(0);
@@ -38,7 +38,7 @@ void mark_contrasts(__global const uint* restrict broadcast,  // the job's words
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
         const uint n = arrived_neighbour(&block, k);
         if (n == RAYA_NOT_HERE) continue;
-        const vec a = colour_at(own, k), b = colour_at(block.words, n);
+        const vec a = colour_at(own, capacity, k), b = colour_at(block.words, band, n);
         if (differs(a.x, b.x, threshold) || differs(a.y, b.y, threshold) || differs(a.z, b.z, threshold)) mine[k] = 1;
     }
 }

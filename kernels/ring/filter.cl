@@ -20,8 +20,8 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
                     const uint band,                          // pixels in the block
                     const uint capacity,                      // pixels in a PE's memory; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0
-                    __global const float* restrict arrived,   // [PE][band][3]
-                    __global float* restrict sums)            // [PE][capacity][3]: added to
+                    __global const float* restrict arrived,   // [PE][3][band]
+                    __global float* restrict sums)            // [PE][3][capacity]: added to
 {
     const uint group = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
@@ -31,10 +31,10 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
     for (uint k = get_local_id(0); k < end; k += RAYA_GROUP) {
         const uint n = arrived_neighbour(&block, k);
         if (n == RAYA_NOT_HERE) continue;
-        const vec sum = vec_add(colour_at(mine, k), colour_at(block.words, n));
-        mine[3 * k] = sum.x;
-        mine[3 * k + 1] = sum.y;
-        mine[3 * k + 2] = sum.z;
+        const vec sum = vec_add(colour_at(mine, capacity, k), colour_at(block.words, band, n));
+        mine[k] = sum.x;
+        mine[capacity + k] = sum.y;
+        mine[2 * capacity + k] = sum.z;
     }
 }
 
@@ -43,7 +43,7 @@ __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void take_means(__global const uint* restrict broadcast,  // the job's words (kernels/shared/job.h)
                 const uint capacity,                      // pixels in a PE's memory; 0: do nothing
                 const uint first_pe,                      // number of the PE that is work-group 0
-                __global float* restrict sums)            // [PE][capacity][3]: sums on entry, means on return
+                __global float* restrict sums)            // [PE][3][capacity]: sums on entry, means on return
 {
     const uint group = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;
@@ -55,6 +55,6 @@ void take_means(__global const uint* restrict broadcast,  // the job's words (ke
         const uint columns = 1 + raya_has_neighbour(m, pixel, RAYA_LEFT) + raya_has_neighbour(m, pixel, RAYA_RIGHT);
         const uint rows = 1 + raya_has_neighbour(m, pixel, RAYA_ABOVE) + raya_has_neighbour(m, pixel, RAYA_BELOW);
         const real pixels = num_from_index(rows * columns);
-        for (uint i = 3 * k; i < 3 * k + 3; ++i) mine[i] = num_div(mine[i], pixels);
+        for (uint i = 0; i < 3; ++i) mine[i * capacity + k] = num_div(mine[i * capacity + k], pixels);
     }
 }

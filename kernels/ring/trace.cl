@@ -118,7 +118,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
                                                      // for RAYA_POINTS_OWN
            __local raya_trace_progress* shared,      // by the work-items of a PE
            __local uint4* memory,                    // where RAYA_WORDS_LOCAL is 1, word_count words, in whole rows
-           __global float* restrict pixels,          // [PE][capacity][3]: linear rgb; read where points are new
+           __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; read where points are new
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels traced now
            __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS], added to
            __global raya_trace_progress* restrict progress,  // [PE]: of the last launch, then of this one
@@ -148,6 +148,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.end = min(end, raya_share_size(store.share));
     store.points = points;
     store.looks = work;
+    store.plane = capacity;
     store.pixels = pixels + (size_t)group * capacity * 3;
     store.marks = marks + (size_t)group * capacity;
     store.cycles = cycles + (size_t)group * capacity;

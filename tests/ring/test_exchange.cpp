@@ -16,7 +16,7 @@ namespace {
 
 constexpr ExchangeWay kWays[] = {ExchangeWay::kRing, ExchangeWay::kBus, ExchangeWay::kBroadcast};
 
-/// Pixels of all PEs, [PE][capacity][3], and bands of them that move.
+/// Pixels of all PEs, [PE][3][capacity], and bands of them that move.
 struct Shares {
     raya_mapping mapping{};
     std::uint32_t capacity = 1, band = 1;

@@ -35,7 +35,7 @@ struct Launch {
 
 /// The memory of all PEs, block after block, and of one more that does not exist: nobody may touch it.
 struct Memory {
-    std::vector<float> arrived, pixels;  // [PE][band][3], [PE][capacity][3]: pixels or their sums
+    std::vector<float> arrived, pixels;  // [PE][3][band], [PE][3][capacity]: pixels or their sums
     std::vector<std::uint8_t> marks;     // [PE][capacity]
 };
 
@@ -153,10 +153,10 @@ Memory poisoned(SplitMix& random, const Launch& l, const Memory& clean, std::siz
     const float poison = random.next() % 2 ? std::numeric_limits<float>::quiet_NaN() : 1e30f;
     Memory memory = clean;
     const raya_u32 sent = raya_share_size(raya_share_of(l.m, static_cast<raya_u32>((pe + l.distance) % l.m.pes)));
-    const std::size_t live = 3 * std::min(l.band, sent - std::min(sent, l.begin));
+    const std::size_t live = std::min(l.band, sent - std::min(sent, l.begin));  // of each of three rows
     const std::size_t band = 3 * l.band, block = 3 * l.capacity;
     for (std::size_t n = 0; n < memory.arrived.size(); ++n)
-        if (n < pe * band || n >= pe * band + live) memory.arrived[n] = poison;
+        if (n / band != pe || n % l.band >= live) memory.arrived[n] = poison;
     for (std::size_t n = 0; n < memory.pixels.size(); ++n)
         if (n / block != pe) memory.pixels[n] = poison;
     for (std::size_t n = 0; n < memory.marks.size(); ++n)
@@ -219,7 +219,8 @@ const Fault kFaults[] = {
      false},
     {"the sums next door",
      Step::kAddNeighbours,
-     {"ring/filter.cl", "(size_t)group * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)",
+     {"ring/filter.cl",
+      "(size_t)group * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)",
       "(size_t)(group + 1) * capacity * 3;\n    const uint end = min(capacity, raya_share_size(block.share)"},
      false,
      true},
@@ -231,7 +232,7 @@ const Fault kFaults[] = {
      true},
     {"the sums of the first PE",
      Step::kTakeMeans,
-     {"ring/filter.cl", "num_div(mine[i], pixels)", "num_div(sums[i], pixels)"},
+     {"ring/filter.cl", "num_div(mine[i * capacity + k], pixels)", "num_div(sums[i * capacity + k], pixels)"},
      true,
      false},
     {"one pixel too many",
@@ -265,7 +266,7 @@ TEST_CASE("poison in other PEs' memory changes no PE's result, and none writes t
             const Findings found = find_faults(runner, kSeed + group, 100);
             CHECK(found.poison_read == 0);
             CHECK(found.stray_writes == 0);
-            CHECK(found.blocks_worked > 60);
+            CHECK(found.blocks_worked > 50);
         }
 }
 

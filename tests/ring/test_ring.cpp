@@ -89,7 +89,7 @@ TEST_CASE("P rotations either way bring every block home", "[ring]") {
         for (const Turn turn : {Turn::kDown, Turn::kUp}) {
             CAPTURE(kSeed, pes, int(turn));
             Communication counted;
-            Ring ring(session, counted, static_cast<std::uint32_t>(pes), 5);
+            Ring ring(session, counted, static_cast<std::uint32_t>(pes), 1, 5);
             const Bits before = random_words(random, pes * 5);
             ring.load(filled(session, "own", before), 5, 0);
             for (std::size_t n = 1; n <= pes; ++n) {
@@ -110,7 +110,7 @@ TEST_CASE("rotations are counted as the words that were copied", "[ring]") {
         const std::uint32_t down = random_below(random, 5), up = random_below(random, 5);
         CAPTURE(kSeed, i, pes, block, down, up);
         Communication counted;
-        Ring ring(session, counted, static_cast<std::uint32_t>(pes), block);
+        Ring ring(session, counted, static_cast<std::uint32_t>(pes), 1, block);
         const Buffer<float> own = filled(session, "own", random_words(random, pes * block));
         session.clear_profile();
         ring.load(own, block, 0);
@@ -134,19 +134,19 @@ TEST_CASE("a band at the end of the share loads the words that are left and keep
     Session session(choose_device(""));
     int shorter = 0;
     for (int i = 0; i < 200; ++i) {
-        const std::size_t pes = kRings[i % 5], share = 1 + random_below(random, 30);
+        const std::size_t pes = kRings[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 30);
         const std::size_t band = 1 + random_below(random, share), begin = random_below(random, share);
-        CAPTURE(kSeed, i, pes, share, band, begin);
+        CAPTURE(kSeed, i, pes, rows, share, band, begin);
         Communication counted;
-        Ring ring(session, counted, static_cast<std::uint32_t>(pes), band);
-        const Bits mine = random_words(random, pes * share), stale = random_words(random, pes * band);
+        Ring ring(session, counted, static_cast<std::uint32_t>(pes), rows, band);
+        const Bits mine = random_words(random, pes * rows * share), stale = random_words(random, pes * rows * band);
         const Buffer<float> own = filled(session, "own", mine);
         ring.load(filled(session, "stale", stale), band, 0);
         ring.load(own, share, begin);
         Bits expected = stale;
         const std::size_t count = std::min(band, share - begin);
-        for (std::size_t pe = 0; pe < pes; ++pe)
-            for (std::size_t n = 0; n < count; ++n) expected[pe * band + n] = mine[pe * share + begin + n];
+        for (std::size_t row = 0; row < pes * rows; ++row)
+            for (std::size_t n = 0; n < count; ++n) expected[row * band + n] = mine[row * share + begin + n];
         CHECK(contents(session, ring.blocks()) == expected);
         CHECK(contents(session, own) == mine);
         CHECK(counted.rotations == 0);
@@ -169,22 +169,22 @@ TEST_CASE("what PEs send over the bus is counted as the words that were copied",
     SplitMix random(kSeed);
     Session session(choose_device(""));
     for (int i = 0; i < 50; ++i) {
-        const std::size_t pes = kRings[i % 5], share = 1 + random_below(random, 40);
+        const std::size_t pes = kRings[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 40);
         const std::size_t words = 1 + random_below(random, share);
         const std::uint32_t sent = random_below(random, 5), told = random_below(random, 5);
-        CAPTURE(kSeed, i, pes, share, words, sent, told);
+        CAPTURE(kSeed, i, pes, rows, share, words, sent, told);
         Communication counted;
         Bus bus(session, counted, static_cast<std::uint32_t>(pes));
-        const Bits mine = random_words(random, pes * share);
+        const Bits mine = random_words(random, pes * rows * share);
         const Buffer<float> own = filled(session, "own", mine);
-        Buffer<float> blocks = filled(session, "blocks", random_words(random, pes * words));
+        Buffer<float> blocks = filled(session, "blocks", random_words(random, pes * rows * words));
         session.clear_profile();
         for (std::uint32_t n = 0; n < sent; ++n)
-            bus.send(own, {n % pes, share, share - words}, blocks, {(n + 1) % pes, words, 0}, words);
+            bus.send(own, {n % pes, share, share - words, rows}, blocks, {(n + 1) % pes, words, 0, rows}, words);
         for (std::uint32_t n = 0; n < told; ++n)
-            bus.broadcast_from(own, {n % pes, share, 0}, blocks, {n % pes, words, 0}, words);
-        CHECK((counted.transfers == sent && counted.transfer_words == sent * words));
-        CHECK((counted.pe_broadcasts == told && counted.pe_broadcast_words == told * words));
+            bus.broadcast_from(own, {n % pes, share, 0, rows}, blocks, {n % pes, words, 0, rows}, words);
+        CHECK((counted.transfers == sent && counted.transfer_words == sent * rows * words));
+        CHECK((counted.pe_broadcasts == told && counted.pe_broadcast_words == told * rows * words));
         CHECK(copied_bytes(session, "bus.send") == 4 * counted.transfer_words);
         CHECK(copied_bytes(session, "bus.broadcast_from") == 4 * counted.pe_broadcast_words);
         CHECK(other_commands(session) == 0);
@@ -217,9 +217,10 @@ TEST_CASE("an exchange brings every band from every distance once, and moves as 
                 came.push_back(std::uint64_t{arrival.begin} << 32 | arrival.distance);
                 const Bits blocks = contents(session, arrival.blocks);
                 for (std::size_t pe = 0; pe < m.pes; ++pe)
-                    for (std::size_t n = 0; n < 3 * std::min(band, capacity - arrival.begin); ++n) {
-                        const std::size_t from = (pe + arrival.distance) % m.pes;
-                        wrong += blocks[pe * band * 3 + n] != mine[(from * capacity + arrival.begin) * 3 + n];
+                    for (std::size_t n = 0; n < 3ull * band; ++n) {
+                        const std::size_t from = (pe + arrival.distance) % m.pes, pixel = arrival.begin + n % band;
+                        wrong += pixel < capacity &&
+                                 blocks[pe * band * 3 + n] != mine[(from * 3 + n / band) * capacity + pixel];
                     }
             });
             std::sort(came.begin(), came.end());
