@@ -98,6 +98,7 @@ int run_on(Ranks& ranks, int argc, char** argv) {
         "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's "
         "own.");
     add_render_command(program, ranks);
+    add_explore_command(program);
     add_devices_command(program);
     add_generate_command(program);
     add_bench_command(program);

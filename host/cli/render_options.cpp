@@ -12,8 +12,31 @@
 #include "host/ring/mapping.hpp"
 
 namespace raya {
+namespace {
 
-void add_render_options(CLI::App& command, RenderOptions& o) {
+void add_antialias_options(CLI::App& command, RenderOptions& o) {
+    add_value(command, "--antialias", o.antialias,
+              "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
+              "differ from a neighbour; neighbours come by --exchange")
+        ->type_name("none|filter|supersample")
+        ->capture_default_str();
+    add_value(command, "--exchange", o.exchange,
+              "How neighbours come to each PE: ring: all blocks move to the next PE at once; bus: from PE to PE, one "
+              "transfer after another; bus-broadcast: each PE in turn to all. The image is the same")
+        ->type_name("ring|bus|bus-broadcast")
+        ->default_str("ring");
+    add_value(command, "--threshold", o.threshold,
+              "Supersample where a colour, clamped to 0..1, differs by this much or more, 0..1; default: 0.125")
+        ->type_name("T");
+    add_value(command, "--points", o.points,
+              "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
+        ->type_name("axes|diagonals")
+        ->default_str("axes");
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
     add_strict_option(command, o.strict);
     add_value(
         command, "--machine", o.machine,
@@ -52,23 +75,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
               "Primary rays through pixel centres, or through pixel corners as SPD counts them")
         ->type_name("centres|corners")
         ->capture_default_str();
-    add_value(command, "--antialias", o.antialias,
-              "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
-              "differ from a neighbour; neighbours come by --exchange")
-        ->type_name("none|filter|supersample")
-        ->capture_default_str();
-    add_value(command, "--exchange", o.exchange,
-              "How neighbours come to each PE: ring: all blocks move to the next PE at once; bus: from PE to PE, one "
-              "transfer after another; bus-broadcast: each PE in turn to all. The image is the same")
-        ->type_name("ring|bus|bus-broadcast")
-        ->default_str("ring");
-    add_value(command, "--threshold", o.threshold,
-              "Supersample where a colour, clamped to 0..1, differs by this much or more, 0..1; default: 0.125")
-        ->type_name("T");
-    add_value(command, "--points", o.points,
-              "Points of supersampling: half a pixel to the left, right, above and below, or towards the corners")
-        ->type_name("axes|diagonals")
-        ->default_str("axes");
+    if (smooths) add_antialias_options(command, o);
     add_value(
         command, "--accel", o.accel,
         "How rays find what they hit, always the same: none: every ray is tested against all objects; bvh: it goes "

@@ -24,8 +24,8 @@ struct RenderOptions {
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
-/// Adds the options with their help texts: unit, default, legal range.
-void add_render_options(CLI::App& command, RenderOptions& options);
+/// Adds the options with their help texts: unit, default, legal range. `smooths`: those of anti-aliasing too.
+void add_render_options(CLI::App& command, RenderOptions& options, bool smooths = true);
 
 // What --size, --format, --lanes and --group say, for any machine. UserError names the option.
 

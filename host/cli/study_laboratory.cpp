@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/quoted.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/studies.hpp"
 #include "host/cli/tuned_option.hpp"
@@ -19,7 +19,6 @@
 #include "host/files/progress.hpp"
 #include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
-#include "host/report/text_tables.hpp"
 #include "host/study/document.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/studies.hpp"
@@ -82,14 +81,6 @@ void print_page(const StudyPage& page, const PlotOutcome& plots, const fs::path&
     for (const std::string& finding : page.findings) fmt::print("  {}\n", finding);
     if (!plots.drawn) fmt::print("  no plots: {}\n", plots.reason);
     fmt::print("  {}\n", (folder / (page.name + ".md")).string());
-}
-
-// A word of a command line, as a shell takes it.
-std::string quoted(const std::string& word) {
-    const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
-        return std::isalnum(c) || std::string_view("_-./:=+,%@").find(char(c)) != std::string_view::npos;
-    });
-    return plain ? word : '\'' + replaced(word, "'", "'\\''") + '\'';
 }
 
 // What makes the page of one study, wherever it is to be written.

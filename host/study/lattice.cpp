@@ -6,13 +6,19 @@
 
 namespace raya {
 
-std::uint64_t shortest_square(std::uint32_t offset, std::uint32_t side) {
-    std::uint64_t least = std::uint64_t{side} * side;  // (0, N)
-    for (std::uint64_t rows = 1; rows * rows < least; ++rows) {
-        const std::uint64_t right = rows * offset % side, columns = std::min(right, side - right);
-        least = std::min(least, rows * rows + columns * columns);
+LatticeVector shortest_vector(std::uint32_t offset, std::uint32_t side) {
+    LatticeVector least{0, side};
+    for (std::uint64_t rows = 1; rows * rows < least.square(); ++rows) {
+        const std::uint64_t right = rows * offset % side, left = side - right;
+        const LatticeVector next{static_cast<std::int64_t>(rows),
+                                 right <= left ? static_cast<std::int64_t>(right) : -static_cast<std::int64_t>(left)};
+        if (next.square() < least.square()) least = next;
     }
     return least;
+}
+
+std::uint64_t shortest_square(std::uint32_t offset, std::uint32_t side) {
+    return shortest_vector(offset, side).square();
 }
 
 bool shares_blocks(std::uint32_t offset, std::uint32_t side, std::uint32_t n) {

@@ -10,7 +10,18 @@
 
 namespace raya {
 
-/// Square of the length of the shortest vector, pixels; `side` N 1 or more, `offset` below it.
+/// From one pixel of a PE to another: so many rows down, so many columns to the right, or to the left where negative.
+struct LatticeVector {
+    std::int64_t rows = 0, columns = 0;
+    std::uint64_t square() const { return static_cast<std::uint64_t>(rows * rows + columns * columns); }
+    bool operator==(const LatticeVector&) const = default;
+};
+
+/// A shortest vector, of several the one of the fewest rows, of two in one row the one to the right; `side` N 1 or
+/// more, `offset` below it.
+LatticeVector shortest_vector(std::uint32_t offset, std::uint32_t side);
+
+/// Square of its length, pixels.
 std::uint64_t shortest_square(std::uint32_t offset, std::uint32_t side);
 
 /// Offsets above `reference` whose shortest vector is longer than its own, and those where it is as long. The mirror of

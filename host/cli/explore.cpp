@@ -1,0 +1,136 @@
+// raya explore SCENE -o FILE.html: one render's costs as a page in which mapping, offset and PEs can be dragged.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
+#include "host/cli/quoted.hpp"
+#include "host/cli/render_options.hpp"
+#include "host/cli/scene_input.hpp"
+#include "host/cli/tuned_option.hpp"
+#include "host/error.hpp"
+#include "host/explore/explorer.hpp"
+#include "host/explore/figures.hpp"
+#include "host/files/progress.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+
+namespace raya {
+namespace {
+
+struct ExploreCommand {
+    RenderOptions render;
+    std::string page;
+    bool quiet = false;
+};
+
+void check_page(const ExploreCommand& command) {
+    const std::string& page = command.page;
+    if (!page.ends_with(".html") && !page.ends_with(".htm") && !page.starts_with("/dev/"))
+        throw UserError(fmt::format("-o {}: what is written is a page for a browser; let the name end in .html", page));
+    check_writable(page);
+    std::error_code error;
+    if (std::filesystem::canonical(command.render.scene, error) == written_file(page) && !error)
+        throw UserError(fmt::format("-o {}: that is the scene; name another file", page));
+}
+
+RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
+    RingSettings settings = ring_settings(command.render, scene);
+    if (settings.dynamic)
+        throw UserError(fmt::format(
+            "{}: its PEs take their pixels while the machine runs; the explorer shows static mappings: choose cyclic, "
+            "column, rows, blocks, grid, tiles or random{}",
+            command.render.mapping.empty() ? "--machine " + command.render.machine
+                                           : "--mapping " + command.render.mapping,
+            command.render.mapping.empty() ? " by --mapping" : ""));
+    settings.keep_costs = true;
+    return settings;
+}
+
+// What renders the same picture; whoever repeats it adds mapping and PEs.
+std::string command_of(const ExploreCommand& command, const RingSettings& settings) {
+    const RenderOptions& o = command.render;
+    std::string text = "raya render " + quoted(o.scene) + " -o image.png";
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) text += fmt::format(" {} {}", option, quoted(value));
+    };
+    add("--machine", o.machine == "spa" ? "" : o.machine);
+    add("--size", o.size);
+    add("--format", o.format);
+    add("--bounces", o.bounces ? fmt::format("{}", settings.bounces) : "");
+    add("--sampling", o.sampling == "centres" ? "" : o.sampling);
+    add("--accel", o.accel);
+    add("--pe-memory", o.pe_memory ? fmt::format("{}", *o.pe_memory) : "");
+    return text;
+}
+
+Exploration exploration_of(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
+                           const RingResult& result) {
+    const std::string accel =
+        settings.accel.kind == AccelKind::kNone ? "" : ", accelerator " + accel_text(settings.accel);
+    return {.scene = command.render.scene,
+            .command = command_of(command, settings),
+            .settings = fmt::format("{}, {}, {} bounces{}", settings.machine.name, format_name(settings.format),
+                                    settings.bounces, accel),
+            .made = fmt::format("Made by raya {} on {} ({}, driver {}).", RAYA_VERSION, device.name, device.platform,
+                                device.driver),
+            .machine = settings.machine,
+            .mapping = settings.mapping,
+            .cost = result.cost(),
+            .image = result.image};
+}
+
+void explore(const ExploreCommand& command) {
+    check_page(command);
+    std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
+    SceneInput input = read_scene(command.render.scene, command.render.strict);
+    const RingSettings settings = settings_of(command, input.scene);
+    warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
+    bar->stage("preparing");
+    const TunedUse tuned = use_tuned(command.render.no_tuned, &input.warnings);
+    Session session(choose_device(command.render.device), Timing::kOff);
+    RingRenderer renderer(session, input.scene, settings);
+    warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
+    bar->stage("rendering");
+    const RingResult result =
+        renderer.render(bar->active() ? [&](double done) { bar->update(done); } : ProgressCallback{});
+    bar->stage("writing");
+    const std::string page = explorer_html(exploration_of(command, settings, session.device(), result));
+    write_whole_file(command.page, page);
+    bar.reset();
+    if (command.quiet) return;
+    const Load load = figures_of(result.cost(), settings.mapping, settings.machine).load;
+    fmt::print("{}: {} x {} pixels, opens with {} on {} PEs: u = {:.3f}, speed-up {:.1f}\n", command.render.scene,
+               settings.mapping.width, settings.mapping.height, mapping_text(settings.mapping), settings.mapping.pes,
+               load.imbalance, load.speedup);
+    fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", command.page,
+               static_cast<double>(page.size()) / 1e3);
+}
+
+}  // namespace
+
+void add_explore_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand(
+        "explore", "Render once, and write a page in which mapping, offset and number of PEs can be dragged");
+    const auto options = std::make_shared<ExploreCommand>();
+    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
+        ->required()
+        ->type_name("SCENE.nff");
+    add_value(*command, "-o,--output", options->page,
+              "Page to write: one file for a browser, below 1 MB, that needs no network")
+        ->required()
+        ->type_name("FILE.html");
+    add_render_options(*command, options->render, false);
+    command->get_option("--mapping")
+        ->description(
+            "The mapping that the page opens with: cyclic, cyclic:p, column, rows, blocks, grid:AxB, "
+            "tiles:WxH, random:seed; the page has all of them; default: the machine's, cyclic on spa");
+    command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
+    command->callback([options] { explore(*options); });
+}
+
+}  // namespace raya
