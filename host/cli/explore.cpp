@@ -88,6 +88,7 @@ void explore(const ExploreCommand& command) {
     check_page(command);
     std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
     SceneInput input = read_scene(command.render.scene, command.render.strict);
+    check_explorable(image_size(command.render, input.scene));
     const RingSettings settings = settings_of(command, input.scene);
     warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     bar->stage("preparing");

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <string_view>
@@ -132,6 +134,15 @@ std::map<std::string, std::string> parts_of(const Exploration& e) {
 
 }  // namespace
 
+void check_explorable(const ImageSize& size) {
+    constexpr std::uint64_t kMostPixels = 2'000'000;  // the project's scenes take a byte a pixel
+    if (std::uint64_t{size.width} * size.height <= kMostPixels) return;
+    throw UserError(
+        fmt::format("--size {}x{}: too many pixels for a page that can be sent, {} at most; remedy: a "
+                    "smaller --size",
+                    size.width, size.height, kMostPixels));
+}
+
 std::string explorer_html(const Exploration& e) {
     if (total_cycles(e.cost) >= kExactCycles)
         throw UserError(
@@ -144,12 +155,13 @@ std::string explorer_html(const Exploration& e) {
                        body,
                        {kAssets + "style.css"},
                        {kAssets + "model.js", kAssets + "link.js", kAssets + "drawing.js", kAssets + "explorer.js"}});
-    if (page.size() > kLargestPage)
-        throw UserError(
-            fmt::format("{}: a page of {} x {} pixels would have {} bytes, {} at most so that it can be "
-                        "sent; remedy: a smaller --size",
-                        e.scene, e.mapping.width, e.mapping.height, page.size(), kLargestPage));
-    return page;
+    if (page.size() <= kLargestPage) return page;
+    const double less = 0.9 * std::sqrt(static_cast<double>(kLargestPage) / static_cast<double>(page.size()));
+    const auto side = [less](std::uint32_t pixels) { return std::max(1, static_cast<int>(less * pixels)); };
+    throw UserError(fmt::format(
+        "{}: a page of {} x {} pixels would have {} bytes, {} at most so that it can be sent; remedy: --size {}x{}",
+        e.scene, e.mapping.width, e.mapping.height, page.size(), kLargestPage, side(e.mapping.width),
+        side(e.mapping.height)));
 }
 
 }  // namespace raya

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "host/image/image.hpp"
+#include "host/machine/image_size.hpp"
 #include "host/machine/machine.hpp"
 #include "host/ring/cost_image.hpp"
 #include "kernels/shared/mapping.h"
@@ -19,6 +20,9 @@ struct Exploration {
     CostImage cost;          // of one size with the mapping and the image
     Image image;
 };
+
+/// Refuses an image of which no page below kLargestPage could be made, before it is rendered. UserError.
+void check_explorable(const ImageSize& size);
 
 /// The page: one file that asks for nothing from anywhere, and says its figures without scripts, too. UserError where
 /// it would be larger than kLargestPage, or its cycles too many for a page's arithmetic.

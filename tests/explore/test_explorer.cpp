@@ -58,7 +58,9 @@ TEST_CASE("the page says the figures of the setting that it opens with, in itsel
 TEST_CASE("a page that would be too large is refused, and so are cycles that no page adds up", "[explore]") {
     RandomSettings random(9);
     Exploration large = exploration(random.costs(700, 700, 33, false));
-    CHECK_THROWS_WITH(explorer_html(large), Contains("1000000 at most") && Contains("a smaller --size"));
+    CHECK_THROWS_WITH(explorer_html(large), Contains("1000000 at most") && Contains("remedy: --size 4"));
+    CHECK_NOTHROW(check_explorable({1000, 2000}));
+    CHECK_THROWS_WITH(check_explorable({2001, 1000}), Contains("--size 2001x1000: too many pixels"));
     Exploration dear = exploration({2, 1, {kExactCycles - 1, 0}});
     CHECK(explorer_html(dear).size() < kLargestPage);
     dear.cost.cycles[1] = 1;

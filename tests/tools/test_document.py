@@ -163,7 +163,7 @@ def main():
     parser.add_argument("document", nargs="?")
     asked = parser.parse_args()
     if browser.program() is None:
-        print("skipped: no Chromium (Debian: apt-get install chromium)")
+        print("skipped: no Chromium (tools/setup --browser)")
         return 77
     with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
         if asked.program:

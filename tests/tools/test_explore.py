@@ -308,7 +308,7 @@ def main():
         wrong += handled(page, square)
         wrong += rendered(page, raya, folder, 24 if THOROUGH else 4)
         if not wrong:
-            wrong += faults_missed(page, [p for p in pages if p.stem in ("wide", "odd", "huge", "large", "square")], folder)
+            wrong += faults_missed(page, [p for p in pages if p.stem in ("wide", "odd", "huge", "nothing", "square", "large")], folder)
     for line in wrong:
         print("test_explore.py:", line, file=sys.stderr)
     return 1 if wrong else 0

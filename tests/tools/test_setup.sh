@@ -52,6 +52,8 @@ run_setup --studies
 expect 1 "neither root nor sudo" "$line libsimgrid-dev"
 run_setup --bare-root
 expect 1 "neither root nor sudo" "$line debootstrap"
+run_setup --browser
+expect 1 "neither root nor sudo" "$line chromium"
 run_setup --gpu
 expect 1 "neither root nor sudo" "$line clang-15 libclc-15 intel-opencl-icd"
 

@@ -83,8 +83,9 @@ const explorer = {
       field.addEventListener("change", () => this.sync(null));
     $("form").addEventListener("submit", (event) => event.preventDefault());
     addEventListener("hashchange", () => this.follow());
+    addEventListener("resize", () => this.soon());  // also where the page is zoomed
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
-    new ResizeObserver(() => this.draw()).observe($("bars"));
+    new ResizeObserver(() => this.soon()).observe($("bars"));
     this.point();
   },
 

@@ -1,0 +1,78 @@
+// raya explore: the page that it writes, and what it refuses.
+#include <catch2/catch.hpp>
+
+#include "tests/cli/run_program.hpp"
+#include "tests/files/scratch_folder.hpp"
+
+namespace raya {
+namespace {
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+std::vector<std::string> small(std::vector<std::string> more) {
+    std::vector<std::string> words = {"explore", scene_file("spheres"), "--size", "20x12", "--lanes", "4"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+TEST_CASE("explore writes a page and says what it opens with", "[cli]") {
+    const ScratchFolder folder;
+    const std::string page = folder / "page.html";
+    const Outcome run = run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block"}));
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK(run.err.empty());
+    CHECK_THAT(run.out, Contains("20 x 12 pixels, opens with cyclic:3 on 20 PEs: u = ") && Contains("page    " + page));
+    const std::string html = file_contents(page);
+    CHECK_THAT(html, StartsWith("<!doctype html>"));
+    CHECK_THAT(html, Contains("<span>--mapping</span> <span>cyclic:3</span> <span>--pes</span> <span>20</span>"));
+    CHECK_THAT(html, Contains("raya explore: " + scene_file("spheres")));
+    CHECK(folder.entries() == 1);
+    const Outcome again =
+        run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));
+    CHECK(again.code == 0);
+    CHECK(again.out.empty());
+    CHECK(file_contents(page) == html);  // the same picture, the same page
+}
+
+TEST_CASE("what explore refuses names the reason and leaves nothing behind", "[cli]") {
+    struct Row {
+        std::vector<std::string> options;
+        std::string reason;
+    };
+    const ScratchFolder folder;
+    const std::string page = folder / "page.html";
+    for (const Row& row :
+         {Row{{"-o", folder / "page.png"}, "let the name end in .html"},
+          Row{{"-o", folder / "no/page.html"}, "does not exist; make it first"},
+          Row{{"-o", page, "--mapping", "dynamic:4"}, "the explorer shows static mappings"},
+          Row{{"-o", page, "--machine", "links"},
+              "choose cyclic, column, rows, blocks, grid, tiles or "
+              "random by --mapping"},
+          Row{{"-o", page, "--machine", "torus"}, "its nodes hold voxels of the scene"},
+          Row{{"-o", page, "--size", "1500"}, "too many pixels for a page"},
+          Row{{"-o", page, "--pes", "0"}, "--pes 0: must be 1..240"},
+          Row{{"-o", page, "--mapping", "tiles:7x5"}, "tiles must divide the image"},
+          Row{{"-o", page, "--antialias", "filter"}, "no option --antialias"}, Row{{}, "--output is required"}}) {
+        const Outcome run = run_raya(small(row.options));
+        INFO(run.told());
+        CHECK(run.code == 2);
+        CHECK_THAT(run.err, Contains(row.reason));
+        CHECK(folder.entries() == 0);
+    }
+}
+
+TEST_CASE("explore on a device that there is not leaves an older page as it was", "[cli]") {
+    const ScratchFolder folder;
+    const std::string page = folder / "page.html";
+    std::ofstream(page) << "older";
+    const Outcome run = run_raya(small({"-o", page, "--device", "no such device"}));
+    INFO(run.told());
+    CHECK(run.code != 0);
+    CHECK(file_contents(page) == "older");
+    CHECK(folder.entries() == 1);
+}
+
+}  // namespace
+}  // namespace raya

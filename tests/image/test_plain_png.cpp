@@ -1,0 +1,37 @@
+// PNG files made without a library, read by one.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "host/files/whole_file.hpp"
+#include "host/image/plain_png.hpp"
+#include "host/image/srgb.hpp"
+#include "tests/files/scratch_folder.hpp"
+#include "tests/image/read_image.hpp"
+
+namespace raya {
+namespace {
+
+TEST_CASE("a plain PNG holds the codes of all pixels", "[image]") {
+    std::mt19937 random(11);
+    const ScratchFolder folder;
+    for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 3}, {37, 21}, {300, 200}}) {
+        Image image{width, height, {}};
+        for (int i = 0; i < 3 * width * height; ++i)  // slopes and steps, beyond both ends as well
+            image.rgb.push_back(static_cast<float>(i % 97) / 80 - 0.1f + (random() % 5 == 0 ? 0.4f : 0.0f));
+        write_whole_file(folder / "x.png", plain_png(image));
+        const Image read = read_image(folder / "x.png");
+        REQUIRE(read.width == width);
+        REQUIRE(read.height == height);
+        for (std::size_t i = 0; i < image.rgb.size(); ++i)
+            if (read.rgb[i] != linear_from_srgb_code(srgb_code(image.rgb[i])))
+                FAIL(width << " x " << height << ", value " << i);
+    }
+}
+
+TEST_CASE("an image that lacks pixels makes no plain PNG", "[image]") {
+    CHECK_THROWS_AS(plain_png({2, 2, {0, 0, 0}}), std::logic_error);
+    CHECK_THROWS_AS(plain_png({0, 0, {}}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace raya
