@@ -150,11 +150,11 @@ std::string explorer_html(const Exploration& e) {
                         "--size, fewer --bounces, or --accel bvh",
                         e.scene, total_cycles(e.cost)));
     const std::string body = filled(embedded_files().at(kAssets + "page.html"), parts_of(e));
-    std::string page =
-        html_document({"raya explore: " + e.scene,
-                       body,
-                       {kAssets + "style.css"},
-                       {kAssets + "model.js", kAssets + "link.js", kAssets + "drawing.js", kAssets + "explorer.js"}});
+    std::string page = html_document({"raya explore: " + e.scene,
+                                      body,
+                                      {kAssets + "style.css"},
+                                      {kAssets + "model.js", kAssets + "link.js", kAssets + "drawing.js",
+                                       kAssets + "words.js", kAssets + "controls.js", kAssets + "explorer.js"}});
     if (page.size() <= kLargestPage) return page;
     const double less = 0.9 * std::sqrt(static_cast<double>(kLargestPage) / static_cast<double>(page.size()));
     const auto side = [less](std::uint32_t pixels) { return std::max(1, static_cast<int>(less * pixels)); };

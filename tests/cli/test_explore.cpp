@@ -11,7 +11,7 @@ using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
 std::vector<std::string> small(std::vector<std::string> more) {
-    std::vector<std::string> words = {"explore", scene_file("spheres"), "--size", "20x12", "--lanes", "4"};
+    std::vector<std::string> words = {"explore", scene_file("spheres"), "--size", "24x16", "--lanes", "4"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
@@ -23,7 +23,7 @@ TEST_CASE("explore writes a page and says what it opens with", "[cli]") {
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
-    CHECK_THAT(run.out, Contains("20 x 12 pixels, opens with cyclic:3 on 20 PEs: u = ") && Contains("page    " + page));
+    CHECK_THAT(run.out, Contains("24 x 16 pixels, opens with cyclic:3 on 20 PEs: u = ") && Contains("page    " + page));
     const std::string html = file_contents(page);
     CHECK_THAT(html, StartsWith("<!doctype html>"));
     CHECK_THAT(html, Contains("<span>--mapping</span> <span>cyclic:3</span> <span>--pes</span> <span>20</span>"));
@@ -51,8 +51,7 @@ TEST_CASE("what explore refuses names the reason and leaves nothing behind", "[c
               "choose cyclic, column, rows, blocks, grid, tiles or "
               "random by --mapping"},
           Row{{"-o", page, "--machine", "torus"}, "its nodes hold voxels of the scene"},
-          Row{{"-o", page, "--size", "1500"}, "too many pixels for a page"},
-          Row{{"-o", page, "--pes", "0"}, "--pes 0: must be 1..240"},
+          Row{{"-o", page, "--pes", "0"}, "--pes 0: must be 1..384"},
           Row{{"-o", page, "--mapping", "tiles:7x5"}, "tiles must divide the image"},
           Row{{"-o", page, "--antialias", "filter"}, "no option --antialias"}, Row{{}, "--output is required"}}) {
         const Outcome run = run_raya(small(row.options));
@@ -61,6 +60,15 @@ TEST_CASE("what explore refuses names the reason and leaves nothing behind", "[c
         CHECK_THAT(run.err, Contains(row.reason));
         CHECK(folder.entries() == 0);
     }
+}
+
+TEST_CASE("explore refuses more pixels than a page can hold before it renders them", "[cli]") {
+    const ScratchFolder folder;
+    const Outcome run = run_raya({"explore", scene_file("spheres"), "-o", folder / "page.html", "--size", "1500"});
+    INFO(run.told());
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Contains("--size 1500x1500: too many pixels for a page") && Contains("remedy"));
+    CHECK(folder.entries() == 0);
 }
 
 TEST_CASE("explore on a device that there is not leaves an older page as it was", "[cli]") {

@@ -4,14 +4,17 @@
 
 const styleColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
-// --- Colours: OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), so that all hues are as light.
+// --- Colours: OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), so that all hues are as
+// light.
 
 function rgbOf(light, chroma, hue) {
   const a = chroma * Math.cos(hue * Math.PI / 180), b = chroma * Math.sin(hue * Math.PI / 180);
   const l = (light + 0.3963377774 * a + 0.2158037573 * b) ** 3, m = (light - 0.1055613458 * a - 0.0638541728 * b) ** 3;
   const s = (light - 0.0894841775 * a - 1.291485548 * b) ** 3;
-  return [4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
-          -0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s].map((linear) => {
+  return [
+    4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+    -0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s
+  ].map((linear) => {
     const v = Math.min(Math.max(linear, 0), 1);
     return Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
   });
@@ -19,10 +22,12 @@ function rgbOf(light, chroma, hue) {
 
 const wordOf = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;  // a pixel of a canvas, the least byte first
 const HUES = 360, LEVELS = 64;
-const table = (count, colour) => Uint32Array.from({length: count * LEVELS},
+const table = (count, colour) => Uint32Array.from(
+  {length: count * LEVELS},
   (_, i) => wordOf(colour(Math.floor(i / LEVELS) / (count - 1), (i % LEVELS) / (LEVELS - 1))));
 const hueOf = (pe, pes) => (205 + 360 * pe / pes) % 360;
-const OWNERS = table(HUES, (turn, level) => rgbOf(0.2 + 0.7 * level, 0.04 + 0.055 * Math.sin(Math.PI * level), turn * 359));
+const OWNERS =
+  table(HUES, (turn, level) => rgbOf(0.2 + 0.7 * level, 0.04 + 0.055 * Math.sin(Math.PI * level), turn * 359));
 const LOADS = table(129, (t, level) => rgbOf(0.22 + 0.66 * level, 0.19 * Math.abs(2 * t - 1), t < 0.5 ? 255 : 29));
 const COSTS = table(256, (t) => rgbOf(0.17 + 0.79 * t, 0.04 + 0.22 * t * (1.25 - t), 295 + 160 * t));
 
@@ -30,7 +35,8 @@ const COSTS = table(256, (t) => rgbOf(0.17 + 0.79 * t, 0.04 + 0.22 * t * (1.25 -
 
 const VIEW_WORDS = {
   owners: () => "Hue: the number of the PE that owns the pixel.",
-  loads: () => "Red: the pixel's PE has more to do than the mean, blue: less. Full colour at twice the mean, and at nothing.",
+  loads: () =>
+    "Red: the pixel's PE has more to do than the mean, blue: less. Full colour at twice the mean, and at nothing.",
   costs: (f, most) => `The brighter, the more cycles a pixel costs; the dearest takes ${grouped(most)}.`,
   picture: () => "What the machine has rendered.",
 };
@@ -41,16 +47,23 @@ function drawPicture(canvas, f, {levels, costs, most, photo}, view, focus) {
   const shown = focus === null && view === "picture" ? null : new Uint32Array(image.data.buffer.slice(0));
   if (shown === null) return context.putImageData(image, 0, 0);
   const {owners, loads, mean, setting: {pes}} = f;
-  const row = Int32Array.from({length: pes}, (_, pe) => LEVELS * (view === "owners"
-    ? Math.floor(hueOf(pe, pes)) : Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)))));
+  const row = Int32Array.from(
+    {length: pes},
+    (_, pe) => LEVELS *
+      (view === "owners" ? Math.floor(hueOf(pe, pes)) :
+                           Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)))));
   const colours = view === "owners" ? OWNERS : LOADS;
   for (let at = 0; at < shown.length; ++at) {
-    if (view === "costs") shown[at] = COSTS[Math.round(255 * Math.sqrt(most > 0 ? costs[at] / most : 0)) * LEVELS];
-    else if (view !== "picture") shown[at] = colours[row[owners[at]] + levels[at]];
+    if (view === "costs")
+      shown[at] = COSTS[Math.round(255 * Math.sqrt(most > 0 ? costs[at] / most : 0)) * LEVELS];
+    else if (view !== "picture")
+      shown[at] = colours[row[owners[at]] + levels[at]];
     if (focus === null) continue;
     // One PE's pixels in white, all others at a third of their light.
-    shown[at] = owners[at] === focus ? 0xffffffff
-      : (0xff000000 | ((shown[at] >>> 16 & 255) / 3 << 16) | ((shown[at] >>> 8 & 255) / 3 << 8) | (shown[at] & 255) / 3) >>> 0;
+    shown[at] = owners[at] === focus ? 0xffffffff :
+                                       (0xff000000 | ((shown[at] >>> 16 & 255) / 3 << 16) |
+                                        ((shown[at] >>> 8 & 255) / 3 << 8) | (shown[at] & 255) / 3) >>>
+        0;
   }
   context.putImageData(new ImageData(new Uint8ClampedArray(shown.buffer), width, height), 0, 0);
 }
@@ -94,14 +107,18 @@ function axes(context, box, ticksX, ticksY, toX, toY) {
   for (const x of ticksX) context.fillText(String(x), Math.min(toX(x), box.right - 4), box.bottom + 12);
 }
 
-// --- The loads: a bar for each PE in parts of the mean; where there are more PEs than room, the highest of those there.
+// --- The loads: a bar for each PE in parts of the mean; where there are more PEs than room, the highest of those
+// there.
 
 function drawBars(canvas, f, focus, most) {
   const {context, width, height} = prepared(canvas), {loads, mean, setting: {pes}} = f;
   const box = {left: 34, right: width - 4, top: 16, bottom: height - 22};
   const unit = mean > 0 ? mean : 1, top = 1.06 * Math.max(most, f.max / unit, 1.2);
-  const toX = (pe) => box.left + (box.right - box.left) * pe / pes, toY = (y) => box.bottom - (box.bottom - box.top) * y / top;
-  axes(context, box, ticksOf(pes, 4).filter((x) => Number.isInteger(x) && x < pes), ticksOf(top, 4), (pe) => toX(pe + 0.5), toY);
+  const toX = (pe) => box.left + (box.right - box.left) * pe / pes,
+        toY = (y) => box.bottom - (box.bottom - box.top) * y / top;
+  axes(
+    context, box, ticksOf(pes, 4).filter((x) => Number.isInteger(x) && x < pes), ticksOf(top, 4), (pe) => toX(pe + 0.5),
+    toY);
   const light = matchMedia("(prefers-color-scheme: dark)").matches ? 0.74 : 0.64;
   const step = Math.max(1, Math.floor(pes / (box.right - box.left)));
   for (let pe = 0; pe < pes; pe += step) {
@@ -125,7 +142,8 @@ function drawBars(canvas, f, focus, most) {
     const words = `u = ${fixed(f.imbalance, 3)}`, half = context.measureText(words).width / 2 + 2;
     context.fillStyle = styleColour("ink");
     context.textAlign = "center";
-    context.fillText(words, Math.min(Math.max(toX(f.busiest + 0.5), box.left + half), box.right - half), toY(f.max / unit) - 9);
+    context.fillText(
+      words, Math.min(Math.max(toX(f.busiest + 0.5), box.left + half), box.right - half), toY(f.max / unit) - 9);
   }
   return (x) => Math.min(Math.max(Math.floor((x - box.left) / (box.right - box.left) * pes), 0), pes - 1);
 }
@@ -136,9 +154,11 @@ function drawCurves(canvas, curves, known, f, root, best, here) {
   const {context, width, height} = prepared(canvas), side = curves.cyclic.length;
   const box = {left: 40, right: width - 8, top: 14, bottom: height - 22};
   let top = Math.max(f.imbalance, 1e-3);
-  for (const curve of Object.values(curves)) for (let p = 0; p < known; ++p) top = Math.max(top, curve[p]);
+  for (const curve of Object.values(curves))
+    for (let p = 0; p < known; ++p) top = Math.max(top, curve[p]);
   top *= 1.06;
-  const toX = (p) => box.left + (box.right - box.left) * p / Math.max(side - 1, 1), toY = (u) => box.bottom - (box.bottom - box.top) * u / top;
+  const toX = (p) => box.left + (box.right - box.left) * p / Math.max(side - 1, 1),
+        toY = (u) => box.bottom - (box.bottom - box.top) * u / top;
   axes(context, box, ticksOf(Math.max(side - 1, 1), 5).filter(Number.isInteger), ticksOf(top, 4), toX, toY);
   const line = (colour, points, wide = 1.5, dash = []) => {
     context.strokeStyle = colour;
@@ -153,7 +173,9 @@ function drawCurves(canvas, curves, known, f, root, best, here) {
   const names = Object.keys(curves);
   for (const fold of [...names].sort((a) => (here && a === here.fold ? 1 : -1))) {
     const dim = here && names.length > 1 && fold !== here.fold;
-    line(styleColour(fold === "cyclic" ? "curve" : "other"), Array.from(curves[fold].slice(0, known), (u, p) => [toX(p), toY(u)]), dim ? 1 : 1.6);
+    line(
+      styleColour(fold === "cyclic" ? "curve" : "other"),
+      Array.from(curves[fold].slice(0, known), (u, p) => [toX(p), toY(u)]), dim ? 1 : 1.6);
   }
   const dot = (p, u, radius, fill) => {
     context.beginPath();
@@ -165,7 +187,8 @@ function drawCurves(canvas, curves, known, f, root, best, here) {
     context.stroke();
   };
   if (best !== null) dot(best.offset, best.u, 3.5, styleColour("paper"));
-  if (here === null) line(styleColour("mark"), [[box.left, toY(f.imbalance)], [box.right, toY(f.imbalance)]], 2);
+  if (here === null)
+    line(styleColour("mark"), [[box.left, toY(f.imbalance)], [box.right, toY(f.imbalance)]], 2);
   else {
     line(styleColour("mark"), [[toX(here.offset), box.top], [toX(here.offset), box.bottom]], 1.5);
     dot(here.offset, f.imbalance, 5, styleColour("mark"));
@@ -179,7 +202,8 @@ function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
   const {context, width} = prepared(canvas), {owners, vector, setting: {pes}} = f;
   const reach = vector ? Math.ceil(Math.hypot(...vector)) : 12;
   const cells = Math.min(Math.max(2 * reach + 5, 17), 71, across, down), cell = width / cells;
-  const row0 = Math.floor((down - cells) / 2), column0 = Math.floor((across - cells) / 2), middle = Math.floor(cells / 2);
+  const row0 = Math.floor((down - cells) / 2), column0 = Math.floor((across - cells) / 2),
+        middle = Math.floor(cells / 2);
   const at = (row, column) => owners[(row0 + row) * across + column0 + column], own = focus ?? at(middle, middle);
   for (let row = 0; row < cells; ++row)
     for (let column = 0; column < cells; ++column) {
@@ -198,7 +222,8 @@ function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
       if (at(row, column) === own && (from === null || away < from.away)) from = {row, column, away};
     }
   if (vector && from) {
-    const [x, y] = [(from.column + 0.5) * cell, (from.row + 0.5) * cell], [dx, dy] = [vector[1] * cell, vector[0] * cell];
+    const [x, y] = [(from.column + 0.5) * cell, (from.row + 0.5) * cell],
+              [dx, dy] = [vector[1] * cell, vector[0] * cell];
     const length = Math.hypot(dx, dy), head = Math.min(9, length / 2), [ux, uy] = [dx / length, dy / length];
     for (const [colour, wide] of [["#000000", 5], ["#ffd84d", 2.5]]) {
       context.strokeStyle = colour;

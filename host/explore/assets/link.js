@@ -13,14 +13,25 @@ const divisorsOf = (side) => Array.from({length: side}, (_, i) => i + 1).filter(
 function settingOf(state) {
   const slots = state.mapping === "cyclic" || state.mapping === "column";
   const [a, b] = state.mapping === "grid" ? state.grid : state.mapping === "tiles" ? state.tile : [0, 0];
-  return {kind: slots ? "slots" : state.mapping, offset: state.mapping === "cyclic" ? state.offset : 0, fold: state.fold,
-          pes: state.mapping === "grid" ? a * b : state.pes, a, b, seed: state.seed};
+  return {
+    kind: slots ? "slots" : state.mapping,
+    offset: state.mapping === "cyclic" ? state.offset : 0,
+    fold: state.fold,
+    pes: state.mapping === "grid" ? a * b : state.pes,
+    a,
+    b,
+    seed: state.seed
+  };
 }
 
 // As --mapping takes it.
 function mappingText(state) {
-  const more = {cyclic: () => `:${state.offset}`, grid: () => `:${state.grid.join("x")}`, tiles: () => `:${state.tile.join("x")}`,
-                random: () => `:${state.seed}`}[state.mapping];
+  const more = {
+    cyclic: () => `:${state.offset}`,
+    grid: () => `:${state.grid.join("x")}`,
+    tiles: () => `:${state.tile.join("x")}`,
+    random: () => `:${state.seed}`
+  }[state.mapping];
   return state.mapping + (more ? more() : "");
 }
 
@@ -73,7 +84,8 @@ function withLink(state, link, {width, height}) {
   }
   if (asked.has("fold")) next.fold = one(asked.get("fold"), ["cyclic", "block"], "the fold") ?? next.fold;
   if (asked.has("view")) next.view = one(asked.get("view"), VIEWS, "the view") ?? next.view;
-  if (asked.has("pes") && next.mapping !== "grid") next.pes = whole(asked.get("pes") ?? "", 1, pixels, "the number of PEs") ?? next.pes;
+  if (asked.has("pes") && next.mapping !== "grid")
+    next.pes = whole(asked.get("pes") ?? "", 1, pixels, "the number of PEs") ?? next.pes;
   if (asked.has("pe")) next.pe = whole(asked.get("pe") ?? "", 0, settingOf(next).pes - 1, "the PE to show");
   return {state: next, problems};
 }

@@ -16,7 +16,8 @@ const stepsBelow = (first, step, end) => first < end ? floorRatio(end - first - 
 // (row, slot) -> PE of the slot mappings.
 function slotOwner({fold, pes}, {width, height}) {
   if (fold === "cyclic")
-    return pes <= width ? (row, slot) => slot % pes : (row, slot) => slot + width * (row % stepsBelow(slot, width, pes));
+    return pes <= width ? (row, slot) => slot % pes :
+                          (row, slot) => slot + width * (row % stepsBelow(slot, width, pes));
   if (pes <= width) return (row, slot) => floorRatio(slot * pes, width);
   return (row, slot) => {
     const first = floorRatio(slot * pes, width), sharers = floorRatio((slot + 1) * pes, width) - first;
@@ -40,8 +41,10 @@ function scrambler(count, seed) {
   return (number) => {
     do {
       for (let round = 0; round < 6; ++round)
-        if (round & 1) number = (number ^ (mixed(keys[round] ^ number >>> low) & lowMask)) >>> 0;
-        else number = (number ^ (mixed(keys[round] ^ (number & lowMask)) & highMask) << low) >>> 0;
+        if (round & 1)
+          number = (number ^ (mixed(keys[round] ^ number >>> low) & lowMask)) >>> 0;
+        else
+          number = (number ^ (mixed(keys[round] ^ (number & lowMask)) & highMask) << low) >>> 0;
     } while (number >= count);
     return number;
   };
@@ -52,7 +55,8 @@ function plainOwner({kind, pes, a, b, seed}, {width, height}) {
   if (kind === "rows") return (row) => row % pes;
   if (kind === "blocks") return (row) => floorRatio(row * pes, height);
   if (kind === "grid") return (row, column) => row % a * b + column % b;
-  if (kind === "tiles") return (row, column) => (floorRatio(row, b) * floorRatio(width, a) + floorRatio(column, a)) % pes;
+  if (kind === "tiles")
+    return (row, column) => (floorRatio(row, b) * floorRatio(width, a) + floorRatio(column, a)) % pes;
   const scrambled = scrambler(width * height, seed);
   return (row, column) => scrambled(row * width + column) % pes;
 }
@@ -89,7 +93,16 @@ function balanceOf(loads) {
     if (loads[pe] < loads[idlest]) idlest = pe;
   }
   const max = loads[busiest], mean = sum / pes, speedup = sum > 0 ? sum / max : pes;
-  return {sum, max, mean, busiest, idlest, imbalance: sum > 0 ? (max - mean) / mean : 0, speedup, efficiency: speedup / pes};
+  return {
+    sum,
+    max,
+    mean,
+    busiest,
+    idlest,
+    imbalance: sum > 0 ? (max - mean) / mean : 0,
+    speedup,
+    efficiency: speedup / pes
+  };
 }
 
 // Fills curves.cyclic and curves.block, where they are asked for, with u of the offsets from `first` on until the time
@@ -104,13 +117,15 @@ function addToCurves(curves, costs, size, pes, first, deadline) {
     if (pes <= width) {
       slots.fill(0);
       for (let row = 0, begin = 0, at = 0; row < height; ++row, at += width) {
-        for (let slot = 0, column = begin; slot < width; ++slot, ++column) slots[slot] += costs[at + (column < width ? column : column - width)];
+        for (let slot = 0, column = begin; slot < width; ++slot, ++column)
+          slots[slot] += costs[at + (column < width ? column : column - width)];
         begin = (begin + offset) % width;
       }
     }
     folds.forEach((fold, which) => {
       loads.fill(0);
-      if (pes <= width) for (let slot = 0; slot < width; ++slot) loads[owner[which](0, slot)] += slots[slot];
+      if (pes <= width)
+        for (let slot = 0; slot < width; ++slot) loads[owner[which](0, slot)] += slots[slot];
       else
         for (let row = 0, at = 0; row < height; ++row)
           for (let column = 0, slot = (width - row * offset % width) % width; column < width; ++column, ++at) {
@@ -141,7 +156,8 @@ function distancesOf(owners, {width, height}, pes) {
 // The fewest turns of the ring past all distances: the nearer ones one way, the others the other way.
 function turnsOf(found) {
   const pes = found.length, distances = [];
-  for (let d = 0; d < pes; ++d) if (found[d]) distances.push(d);
+  for (let d = 0; d < pes; ++d)
+    if (found[d]) distances.push(d);
   if (distances.length === 0) return 0;
   let fewest = Infinity;
   for (let n = 0; n <= distances.length; ++n)
@@ -176,7 +192,8 @@ function shortestVector(offset, side) {
 
 // null where the pixels of a PE are no lattice.
 function vectorOf({kind, fold, offset, pes, a, b}, {width}) {
-  if (kind === "slots" && (fold === "cyclic" ? width % pes === 0 : width === pes)) return shortestVector(offset % pes, pes);
+  if (kind === "slots" && (fold === "cyclic" ? width % pes === 0 : width === pes))
+    return shortestVector(offset % pes, pes);
   if (kind === "rows") return [0, 1];
   if (kind === "grid") return b <= a ? [0, b] : [a, 0];
   return null;
@@ -185,15 +202,19 @@ function vectorOf({kind, fold, offset, pes, a, b}, {width}) {
 // --- All of a setting
 
 function figuresOf(setting, size, costs, machine) {
-  const owners = ownersOf(setting, size), loads = loadsOf(owners, costs, setting.pes), sizes = new Int32Array(setting.pes);
+  const owners = ownersOf(setting, size), loads = loadsOf(owners, costs, setting.pes),
+        sizes = new Int32Array(setting.pes);
   for (const pe of owners) ++sizes[pe];
   const share = sizes.reduce((most, pixels) => Math.max(most, pixels), 0);
   const balance = balanceOf(loads), moves = movesOf(owners, size, setting.pes);
-  const figures = {setting, owners, loads, sizes, share, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
+  const figures =
+    {setting, owners, loads, sizes, share, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
   if (machine) {  // host/machine/time_model.cpp
     const words = moves.rotations * setting.pes * 3 * share;
-    figures.time = {compute: 1e-6 * machine.cycleNs * balance.max,
-                    rotations: moves.rotations * machine.syncMs + 1e3 * words / machine.linkWords / setting.pes};
+    figures.time = {
+      compute: 1e-6 * machine.cycleNs * balance.max,
+      rotations: moves.rotations * machine.syncMs + 1e3 * words / machine.linkWords / setting.pes
+    };
   }
   return figures;
 }
@@ -237,7 +258,7 @@ function textsOf(f) {
     vector: vectorText(f.vector),
     rotations: `${grouped(f.rotations)} rotations of ${grouped(3 * f.share)} words`,
     bus: `${grouped(f.transfers)} transfers or ${grouped(f.broadcasts)} broadcasts`,
-    time: f.time ? `${timeText(f.time.compute)} to trace, ${timeText(f.time.rotations)} to rotate` : "not known of this machine",
+    time: f.time ? `${timeText(f.time.compute)} to trace, ${timeText(f.time.rotations)} to rotate` :
+                   "not known of this machine",
   };
 }
-
