@@ -12,8 +12,8 @@ CORES = {"gfx90a": Core(32, 16, 64 * 1024, 64 * 1024, 512, lone_groups=32)}
 LIBRARY = "amdgcn--amdhsa.bc"
 MUST_NOT = {"double precision": re.compile(r"^\s*v_\w+_f64\b", re.M),
             "does not round to nearest": re.compile(r"\.amdhsa_float_round_mode_32 [^0]"),
-            "denormals are flushed": re.compile(r"\.amdhsa_float_denorm_mode_32 [^3]")}
-CALL = re.compile(r"^\s*s_swappc_b64\b", re.M)
+            "denormals are flushed": re.compile(r"\.amdhsa_float_denorm_mode_32 [^3]"),
+            "a call is left": re.compile(r"^\s*s_swappc_b64\b", re.M)}
 SYMBOL = re.compile(r"\b([A-Za-z_]\w*)@(?:gotpcrel|rel)32")
 
 
@@ -64,5 +64,5 @@ class Amd:
             found = Figures(kernel_name(build, re.search(r"^    \.name: +(\w+)", kernel, re.M)[1]), build["variant"], target,
                             value["wavefront_size"], int(group[1]) if group else build["group"], value["vgpr_count"],
                             value["vgpr_spill_count"], value["private_segment_fixed_size"], value["group_segment_fixed_size"],
-                            value["sgpr_spill_count"], len(CALL.findall(text)))
+                            value["sgpr_spill_count"])
             yield CORES[target].fit(found, waves_of(found.registers, value["sgpr_count"]))

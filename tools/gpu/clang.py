@@ -1,6 +1,8 @@
 """clang and libclc, which stand in for the OpenCL compilers of NVIDIA and AMD."""
 import hashlib, re, shutil, subprocess
 
+INLINES = ["-mllvm", "-inline-threshold=1000000"]  # whatever it can, as compilers inside drivers do; what is left cannot be
+
 
 class Clang:
     def __init__(self, program, libclc):
@@ -24,7 +26,7 @@ class Clang:
     def assembly(self, folder, build, library, options):
         """The text, and None; or None, and the compiler's first error."""
         to = folder / f"{build['source']}.{library}.s"
-        done = subprocess.run([self.program, "-x", "cl", "-O3", "-nogpulib", "-Wno-linker-warnings", *options, *build["options"], "-Xclang",
+        done = subprocess.run([self.program, "-x", "cl", "-O3", *INLINES, "-nogpulib", "-Wno-linker-warnings", *options, *build["options"], "-Xclang",
                                "-mlink-builtin-bitcode", "-Xclang", str(self.libclc / library), "-S", "-o", str(to),
                                str(folder / build["source"])], capture_output=True, text=True)
         if done.returncode:

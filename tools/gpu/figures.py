@@ -28,7 +28,6 @@ class Figures:
     stack: int
     local: int
     scalar_spills: int = 0  # AMD: scalar registers kept in lanes of vector ones
-    calls: int = 0          # of functions that are not inlined, in the kernel's file
     warps: int = 0          # that fit
     local_left: int = 0
 

@@ -45,7 +45,7 @@ class Intel:
                 told = [f"does not build: {first_error(said)}"]
             else:
                 about = section(made[0].read_bytes(), ".ze_info")
-                told = faults_of(made[1].read_bytes())
+                told = faults_of(made[1].read_bytes()) + ["a call is left"] * ("has_stack_calls: true" in about)
                 figures += self.figures(build, target, about, dict(SPILLED.findall(said)))
             faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in told]
         return figures, faults
@@ -58,8 +58,7 @@ class Intel:
             function, group = kernel.split()[0], re.search(r"required_work_group_size: \[ (\d+)", kernel)
             simd = value["simd_size"]
             found = Figures(kernel_name(build, function), build["variant"], target, simd, int(group[1]) if group else build["group"],
-                            value["grf_count"], int(spilled.get(function, 0)), stack_of(kernel, simd), value.get("slm_size", 0),
-                            calls=int("has_stack_calls: true" in kernel))
+                            value["grf_count"], int(spilled.get(function, 0)), stack_of(kernel, simd), value.get("slm_size", 0))
             yield CORES[target].fit(found, CORES[target].warps * 128 // found.registers)
 
 

@@ -16,8 +16,7 @@ OPTIONS = ["-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang"
 # Each rounded once, to nearest, denormals kept. Without a rounding ptxas may make two of them one.
 ARITHMETIC = re.compile(r"^\s*(?:@\S+\s+)?(?:add|sub|mul|mad|fma|div|sqrt|rcp|rsqrt|sin|cos|lg2|ex2|tanh)(\.[a-z0-9_]+)*\.f32\b.*$", re.M)
 MUST_NOT = {"double precision": re.compile(r"\.f64\b"), "denormals are flushed": re.compile(r"\.ftz\b"),
-            "unresolved": re.compile(r"^\.extern \.func", re.M)}
-CALL = re.compile(r"^\s*(?:@\S+\s+)?call\b", re.M)
+            "unresolved": re.compile(r"^\.extern \.func", re.M), "a call is left": re.compile(r"^\s*(?:@\S+\s+)?call\b", re.M)}
 USED = re.compile(r"Compiling entry function '(\w+)' for '\w+'.*?(\d+) bytes stack frame, (\d+) bytes spill stores.*?Used (\d+) registers"
                   r"[^\n]*?(?:, (\d+) bytes smem)?[^\n]*\n", re.S)
 
@@ -83,5 +82,5 @@ class Nvidia:
     def figures(build, target, ptx, said):
         for function, stack, spills, registers, local in USED.findall(said):
             found = Figures(kernel_name(build, function), build["variant"], target, 32, build["group"],
-                            int(registers), int(spills), int(stack), int(local or 0), calls=len(CALL.findall(ptx)))
+                            int(registers), int(spills), int(stack), int(local or 0))
             yield CORES[target].fit(found, warps_of(found.registers))

@@ -4,8 +4,8 @@ import sys
 from gpu import figures
 
 LEGEND = """A cell: registers of a work-item (r); what spills, if anything does (sp; of AMD's scalar registers ssp); stack of a work-item in bytes
-(B); calls left in the kernel's file, if there are any (c); warps that fit in a core with the group's size that is told (w), and up to how
-much local memory of each group, in KB. On Intel's the width of a thread comes first, since registers are always 128 or 256."""
+(B); warps that fit in a core with the group's size that is told (w), and up to how much local memory of each group, in KB. On Intel's the
+width of a thread comes first, since registers are always 128 or 256."""
 CORE = {"sm_80": "A100, SM: 64 warps of 32", "sm_90": "H100, SM: 64 warps of 32", "gfx90a": "MI200, CU: 32 waves of 64",
         "dg2": "Arc, Xe core: 128 threads of 8, 16 or 32", "pvc": "Max, Xe core: 64 threads of 16 or 32"}
 
@@ -13,8 +13,7 @@ CORE = {"sm_80": "A100, SM: 64 warps of 32", "sm_90": "H100, SM: 64 warps of 32"
 def cell(f):
     registers = f"x{f.width} {f.registers}r" if f.target in ("dg2", "pvc") else f"{f.registers}r"
     spills = (f" {f.spills}sp" if f.spills else "") + (f" {f.scalar_spills}ssp" if f.scalar_spills else "")
-    calls = f" {f.calls}c" if f.calls else ""
-    return f"{registers}{spills} {f.stack}B{calls} {f.warps}w/{f.local_left // 1024}K"
+    return f"{registers}{spills} {f.stack}B {f.warps}w/{f.local_left // 1024}K"
 
 
 def rows(all_figures, targets):
@@ -46,7 +45,7 @@ def page(cells, versions, vendors):
 
 Written by `tools/gpu_check --write`, which compiles the kernels for GPUs on a machine that has none, as raya builds them there
 (`host/kernels/kernel_options.cpp`), and holds them against `tests/portability/gpu_budget.csv`. For NVIDIA and AMD clang and libclc stand in
-for the compilers of their drivers, which may come to other figures; ocloc is Intel's own.
+for the compilers of their drivers, which may come to other figures, and inline all that they can; ocloc is Intel's own.
 
 | target | core | compilers |
 | --- | --- | --- |
