@@ -26,7 +26,7 @@
 namespace raya {
 namespace {
 
-const std::string kAssets = "host/explore/assets/";
+std::string asset(const std::string& name) { return "host/explore/assets/" + name; }
 
 // Every {{key}} of the template once, and no {{key}} of what is put in.
 std::string filled(const std::string& page, const std::map<std::string, std::string>& html) {
@@ -104,6 +104,11 @@ std::string reference_html() {
     return {};
 }
 
+// Of a command: options break between lines, not within.
+std::string words_html(const std::string& command) {
+    return "<span>" + replaced(html_text(command), " ", "</span> <span>") + "</span>";
+}
+
 std::map<std::string, std::string> parts_of(const Exploration& e) {
     const raya_mapping& m = e.mapping;
     std::map<std::string, std::string> parts;
@@ -119,9 +124,8 @@ std::map<std::string, std::string> parts_of(const Exploration& e) {
     parts["few_pes"] = number(std::min(m.height, m.width));
     parts["render"] = html_text(e.settings);
     parts["total"] = grouped_text(total_cycles(e.cost)) + " cycles";
-    parts["options"] = "<code>" + html_text(mapping_option(m)) + "</code>";
-    parts["command"] =
-        "<span>" + replaced(html_text(e.command + ' ' + mapping_option(m)), " ", "</span> <span>") + "</span>";
+    parts["options"] = "<code>" + words_html(mapping_option(m)) + "</code>";
+    parts["command"] = words_html(e.command + ' ' + mapping_option(m));
     parts["machine"] = html_text(e.machine.name);
     parts["made"] = html_prose(e.made);
     parts["reference"] = reference_html();
@@ -149,12 +153,12 @@ std::string explorer_html(const Exploration& e) {
             fmt::format("{}: its pixels take {} cycles, more than a page adds up exactly; remedy: a smaller "
                         "--size, fewer --bounces, or --accel bvh",
                         e.scene, total_cycles(e.cost)));
-    const std::string body = filled(embedded_files().at(kAssets + "page.html"), parts_of(e));
+    const std::string body = filled(embedded_files().at(asset("page.html")), parts_of(e));
     std::string page = html_document({"raya explore: " + e.scene,
                                       body,
-                                      {kAssets + "style.css"},
-                                      {kAssets + "model.js", kAssets + "link.js", kAssets + "drawing.js",
-                                       kAssets + "words.js", kAssets + "controls.js", kAssets + "explorer.js"}});
+                                      {asset("style.css")},
+                                      {asset("model.js"), asset("link.js"), asset("drawing.js"), asset("words.js"),
+                                       asset("controls.js"), asset("explorer.js")}});
     if (page.size() <= kLargestPage) return page;
     const double less = 0.9 * std::sqrt(static_cast<double>(kLargestPage) / static_cast<double>(page.size()));
     const auto side = [less](std::uint32_t pixels) { return std::max(1, static_cast<int>(less * pixels)); };

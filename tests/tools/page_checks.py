@@ -1,5 +1,14 @@
-"""What must hold of every page that raya writes, looked at in a browser (browser.py)."""
-import json
+#!/usr/bin/env python3
+"""What must hold of every page that raya writes, looked at in a browser (browser.py).
+
+    tests/tools/page_checks.py PAGE.html [--pictures FOLDER]      complaints about any page; screenshots for a person to look at
+"""
+import argparse, json, sys
+from pathlib import Path
+
+import browser
+
+WIDTHS = (400, 820, 1400)
 
 # What a browser finds in the page, as a list of complaints. A link with an = is a state of the page and no place in it. In a drawing, text is set with fill; its ground is the document's.
 LOOK = r"""(() => {
@@ -80,3 +89,26 @@ def told(page):
             yield "in the console: " + json.dumps(what["args"])[:200]
         elif method == "Log.entryAdded":
             yield "in the log: " + what["entry"]["text"][:200]
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("page")
+    parser.add_argument("--pictures")
+    asked = parser.parse_args()
+    url, wrong = Path(asked.page).resolve().as_uri(), []
+    with browser.Browser() as page:
+        for width, dark, scripts in [(w, d, True) for w in WIDTHS for d in (False, True)] + [(WIDTHS[1], False, False)]:
+            page.open(url, width, dark, scripts)
+            if scripts:  # which may take their time
+                page.value("new Promise((done) => setTimeout(done, 1500))")
+            name = f"{width}-{'dark' if dark else 'light'}{'' if scripts else '-no-scripts'}"
+            wrong += [f"{name}: {text}" for text in [*page.value(LOOK)["wrong"], *told(page)]]
+            if asked.pictures:
+                page.picture(Path(asked.pictures, f"{Path(asked.page).stem}-{name}.png"))
+    print("\n".join(wrong) or "nothing is wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

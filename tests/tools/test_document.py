@@ -4,8 +4,7 @@ text has contrast, columns sort and plots tell their figures; at three widths, l
 the checks are tried on faults.
 
     tests/tools/test_document.py --program PROGRAM       PROGRAM FOLDER writes the document to look at (tests/study/write_small_document.cpp)
-    tests/tools/test_document.py INDEX.html [--pictures FOLDER]
-                                                         a document of one's own, no faults; screenshots for a person to look at
+    tests/tools/test_document.py INDEX.html              a document of one's own, no faults; page_checks.py leaves screenshots
 Exit code 77 where there is no Chromium.
 """
 import argparse, subprocess, sys, tempfile
@@ -159,7 +158,6 @@ def faults_missed(page, text, count, folder):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--program")
-    parser.add_argument("--pictures")
     parser.add_argument("document", nargs="?")
     asked = parser.parse_args()
     if browser.program() is None:
@@ -175,11 +173,6 @@ def main():
         if asked.program:
             wrong += [f"{count} figures"] * (count != 5)
             wrong += faults_missed(page, text, count, folder) if not wrong else []
-        if asked.pictures:
-            for width in WIDTHS:
-                for dark in (False, True):
-                    page.open(index.as_uri(), width, dark)
-                    page.picture(Path(asked.pictures, f"{index.parent.name}-{width}-{'dark' if dark else 'light'}.png"))
     for line in wrong:
         print("test_document.py:", line, file=sys.stderr)
     return 1 if wrong else 0

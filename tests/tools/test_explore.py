@@ -193,6 +193,11 @@ def handled(page, html):
     if not command.endswith("--mapping column --pes 63 --fold block"):
         yield f"the command is {command}"
 
+    for link in page.value("[...document.querySelectorAll('main li a')].map((a) => a.getAttribute('href').slice(1))"):
+        answer = page.value(f"{FOLLOW}([{{link: '{link}'}}])")[0]
+        if answer["message"] or f"pes={answer['pes']}" not in link:
+            yield f"the page's own link {link}: '{answer['message']}', {answer['pes']} PEs"
+
     start(page, html.as_uri() + "#mapping=cyclic:64&pes=0&fold=x&view=%00&pe=9999&what=ever", width=400)
     message = page.value("document.getElementById('message').hidden ? '' : document.getElementById('message').textContent")
     for part in ("offset p must be 0 to 63", "number of PEs must be 1 to 4096", "fold must be", "view must be", "PE to show must be"):

@@ -64,7 +64,8 @@ function listen(page) {
   $("form").addEventListener("submit", (event) => event.preventDefault());
   addEventListener("hashchange", () => page.follow());
   addEventListener("resize", () => page.soon());  // also where the page is zoomed
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => page.draw());
+  for (const media of ["(prefers-color-scheme: dark)", "print"])
+    matchMedia(media).addEventListener("change", () => page.draw());
   new ResizeObserver(() => page.soon()).observe($("bars"));
   listenToPointer(page);
 }
