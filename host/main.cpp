@@ -1,4 +1,5 @@
 // raya: traces rays on models of distributed-memory array machines.
 #include "host/cli/commands.hpp"
+#include "host/version.hpp"
 
-int main(int argc, char** argv) { return raya::run_program(argc, argv); }
+int main(int argc, char** argv) { return raya::run_program(argc, argv, raya::commit_and_build()); }

@@ -18,6 +18,7 @@
 #include "host/study/measured.hpp"
 #include "host/study/other_load.hpp"
 #include "host/study/rank_runs.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -227,7 +228,7 @@ Json report_of(const Rows& rows, const std::string& scene, const std::string& ma
     Json list = Json::list();
     for (const RankRow& row : rows) list.push_back(json_of(rows, row));
     return {{"kind", "raya bench --ranks"},
-            {"raya", RAYA_VERSION},
+            {"raya", raya_version()},
             {"scene", scene},
             {"machine", machine},
             {"device", rows.front().said.device},

@@ -15,6 +15,7 @@
 #include "host/study/measured.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -124,7 +125,7 @@ void take_samples(std::vector<BenchRow>& rows, int samples) {
 }
 
 BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device) {
-    BenchReport report{.raya = RAYA_VERSION,
+    BenchReport report{.raya = raya_version(),
                        .device = device.name,
                        .platform = device.platform,
                        .version = device.version,

@@ -19,6 +19,7 @@
 #include "host/files/interruption.hpp"
 #include "host/files/say.hpp"
 #include "host/ranks/launch.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -89,11 +90,12 @@ void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
             });
 }
 
-int run_on(Ranks& ranks, int argc, char** argv) {
+int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     CLI::App program{"raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.",
                      "raya"};
     program.require_subcommand(1);
-    program.set_version_flag("--version", "raya " RAYA_VERSION);
+    program.set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
+                             "Print version, commit and build");
     program.footer(
         "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's "
         "own.");
@@ -121,7 +123,7 @@ int fail_at_start(const std::string& text, int code) {
 
 }  // namespace
 
-int run_program(int argc, char** argv) {
+int run_program(int argc, char** argv, const std::string& build) {
     open_standard_files();
     end_cleanly_when_interrupted();
     explain_driver_crashes();
@@ -131,7 +133,7 @@ int run_program(int argc, char** argv) {
         if (ranks)
             name_process_in_crashes(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),
                                     speaking_turn_s(ranks->rank()));
-        return run_on(ranks ? *ranks : Ranks::alone(), argc, argv);
+        return run_on(ranks ? *ranks : Ranks::alone(), argc, argv, build);
     } catch (const UserError& error) {
         return fail_at_start(error.what(), kExitUserError);
     } catch (const DeviceError& error) {

@@ -17,8 +17,9 @@ struct CheckFailure {
 };
 
 /// Parses the command line, runs the command and returns the exit code: 0 done, 2 for a mistake in options or input, 3
-/// for trouble with the device, 4 for a check that failed, 1 for a fault of our own. Messages go to stderr.
-int run_program(int argc, char** argv);
+/// for trouble with the device, 4 for a check that failed, 1 for a fault of our own. Messages go to stderr. `build` is
+/// what --version says beside the version.
+int run_program(int argc, char** argv, const std::string& build);
 
 void add_render_command(CLI::App& program, Ranks& ranks);
 void add_devices_command(CLI::App& program);

@@ -10,6 +10,7 @@
 #include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/session_trace.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -96,7 +97,7 @@ std::vector<ProgramBuild> RenderWatch::builds() const {
 void RenderWatch::write(Session& session, const std::function<void(TraceFile&)>& add_machine) {
     if (!traces()) return;
     TraceFile file(trace_.events / (1 + others_.size()));
-    file.metadata()["program"] = "raya " RAYA_VERSION;
+    file.metadata()["program"] = name_and_version();
     if (many_) file.metadata()["rank_clocks"] = clocks_;
     add_measured(file, session, 0);
     add_machine(file);

@@ -22,6 +22,7 @@
 #include "host/study/document.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/studies.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -95,7 +96,7 @@ RunRecord record_of(const Study& study, const LaboratoryCommand& command, const 
     if (command.strict) line += " --strict";
     if (!command.device.empty()) line += " --device " + quoted(command.device);
     if (command.no_tuned) line += " --no-tuned";
-    return {RAYA_VERSION, line + " -o DIR", device.name, device.platform, device.driver};
+    return {raya_version(), line + " -o DIR", device.name, device.platform, device.driver};
 }
 
 std::string stage_of(std::span<const Study> wanted, std::size_t at) {

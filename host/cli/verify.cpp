@@ -16,6 +16,7 @@
 #include "host/files/whole_file.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/verify/worker.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -90,7 +91,7 @@ Json report_of(const std::vector<DeviceChecks>& all, Depth depth) {
                            {"seconds", one.seconds},
                            {"checks", checks}});
     }
-    return {{"program", "raya " RAYA_VERSION}, {"depth", depth_name(depth)}, {"devices", devices}};
+    return {{"program", name_and_version()}, {"depth", depth_name(depth)}, {"devices", devices}};
 }
 
 void print_overall(const std::vector<DeviceChecks>& all) {

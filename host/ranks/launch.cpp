@@ -14,6 +14,7 @@
 #include "host/files/module.hpp"
 #include "host/ranks/deadline.hpp"
 #include "host/ranks/mpi_module.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -73,7 +74,7 @@ void share_cores(const Ranks& ranks) {
 std::string build_text() {
     std::size_t hash = 0;
     for (const auto& [path, text] : embedded_files()) hash = 31 * hash + std::hash<std::string>()(path + text);
-    return fmt::format("raya {} ({:016x})", RAYA_VERSION, hash);
+    return fmt::format("{} ({:016x})", name_and_version(), hash);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "host/files/read_file.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/tune/values_json.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -62,7 +63,7 @@ void check_is_of(const Json& json, const DeviceInfo& device) {
         if (is != must) throw UserError(fmt::format("of another {}: {}, not {}", what, is, must));
     };
     check(std::to_string(json.at("version").whole()), std::to_string(kVersion), "form");
-    check(json.at("raya").text(), RAYA_VERSION, "version of raya");
+    check(json.at("raya").text(), raya_version(), "version of raya");
     const Json now = device_json(device), &then = json.at("device");
     for (const std::string& key : now.keys())
         check(then.at(key).text(), now.at(key).text(), ("device's " + key).c_str());
@@ -113,7 +114,7 @@ std::string tuned_file_name(const DeviceInfo& device) {
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file) {
     Json entries = Json::list();
     for (const TunedEntry& entry : file.entries) entries.push_back(to_json(entry));
-    return Json{{"kind", kKind},     {"version", kVersion},           {"raya", RAYA_VERSION},
+    return Json{{"kind", kKind},     {"version", kVersion},           {"raya", raya_version()},
                 {"date", file.date}, {"device", device_json(device)}, {"tuned", entries}}
                .dump(2) +
            "\n";

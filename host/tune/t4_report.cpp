@@ -4,6 +4,7 @@
 
 #include "host/files/json.hpp"
 #include "host/tune/values_json.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -64,7 +65,7 @@ std::string t4_text(const DeviceInfo& device, const std::vector<Tuning>& tunings
     return Json{{"schema_version", kSchemaVersion},
                 {"metadata",
                  {{"timeunit", "milliseconds"},
-                  {"program", "raya " RAYA_VERSION},
+                  {"program", name_and_version()},
                   {"device", device.name},
                   {"platform", device.platform},
                   {"driver", device.driver}}},

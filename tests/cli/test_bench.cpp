@@ -1,6 +1,7 @@
 // raya bench against an earlier report: what it writes, what it holds against what, and its exit codes.
 #include <fstream>
 
+#include "host/version.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/document.hpp"
@@ -45,7 +46,7 @@ TEST_CASE("bench --report writes its rows, --compare holds a later run against t
     REQUIRE(first.code == 0);
     const Document report = json_of(base);
     CHECK(report["kind"] == "raya bench");
-    CHECK(report["raya"] == RAYA_VERSION);
+    CHECK(report["raya"] == raya_version());
     for (const char* key : {"name", "platform", "version", "driver"}) CHECK(!report["device"][key].empty());
     REQUIRE(report["rows"].size() == 1);
     const Document& row = report["rows"][0];

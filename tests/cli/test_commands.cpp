@@ -3,6 +3,7 @@
 #include <sstream>
 #include <utility>
 
+#include "host/version.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/document.hpp"
 
@@ -35,8 +36,13 @@ std::vector<Words> lines_that_start_with(const std::string& text, const std::str
     return found;
 }
 
-TEST_CASE("--version prints name and version", "[cli]") {
-    CHECK(succeed({"--version"}).out == "raya " RAYA_VERSION "\n");
+TEST_CASE("--version prints name, version, commit and build", "[cli]") {
+    const std::string out = succeed({"--version"}).out;
+    CHECK_THAT(out, Catch::StartsWith(fmt::format("{} (", name_and_version())));
+    CHECK_THAT(out,
+               Catch::Matches("raya [0-9.]+ \\((commit [0-9a-f]{12}( with changes)?, )?[A-Za-z]+, [A-Za-z]+ [0-9.]+"
+                              "(, sanitizers)?\\)\n"));
+    CHECK(std::string(name_and_version()) == fmt::format("raya {}", raya_version()));
 }
 
 TEST_CASE("--help names every command and the exit codes", "[cli]") {

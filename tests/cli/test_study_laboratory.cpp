@@ -5,6 +5,7 @@
 #include <set>
 
 #include "host/files/program.hpp"
+#include "host/version.hpp"
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
@@ -50,7 +51,7 @@ TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[
     CHECK(json["tables"][1]["name"] == "fig8");
     CHECK(json["tables"][1]["rows"].size() == 32);
     CHECK(json["run"]["command"] == "raya study fig8 --size 32 -o DIR");
-    CHECK(json["run"]["version"] == RAYA_VERSION);
+    CHECK(json["run"]["version"] == raya_version());
     CHECK_FALSE(json["run"]["driver"].get<std::string>().empty());
     const std::string document = file_contents(folder / "index.html");
     for (const char* part : {"Not drawn: ", "raya study fig8 --size 32 -o DIR", "python3-matplotlib", "</html>"})

@@ -8,7 +8,7 @@ import sys
 
 root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__).resolve()
 root = root if root.is_dir() else root.parents[2]
-FOR_ALL = {"host/error.hpp", "host/embedded.hpp"}
+FOR_ALL = {"host/error.hpp", "host/embedded.hpp", "host/version.hpp"}
 BARE = "kernels/number/"  # a folder that others copy: its files name each other without a path
 NO_OPENCL = ["host/files/", "host/image/", "host/machine/", "host/report/", "host/scene/"]
 faults = []

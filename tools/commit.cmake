@@ -1,0 +1,24 @@
+# Writes OUTPUT, a C++ file with the commit of the sources in ROOT and with BUILD, unless it says so already: see
+# host/version.hpp. Sources that `git archive` packed know their commit too; others have none.
+set(commit "")
+file(STRINGS ${ROOT}/tools/commit.txt packed REGEX "^[0-9a-f]+$")
+if(packed)
+    string(SUBSTRING "${packed}" 0 12 commit)
+elseif(EXISTS ${ROOT}/.git)  # not that of a folder above
+    find_program(GIT git)
+    if(GIT)
+        execute_process(COMMAND ${GIT} -C ${ROOT} describe --always --exclude=* --abbrev=12 "--dirty= with changes" OUTPUT_VARIABLE told
+                        OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failure)
+        if(failure EQUAL 0)
+            set(commit "${told}")
+        endif()
+    endif()
+endif()
+if(commit)
+    string(PREPEND BUILD "commit ${commit}, ")
+endif()
+file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[// Made by tools/commit.cmake.
+#include "host/version.hpp"
+
+const char* raya::commit_and_build() { return "@BUILD@"; }
+]])
