@@ -27,6 +27,18 @@ namespace {
 constexpr int kExitBug = 1;
 constexpr int kExitCheckFailed = 4;
 
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's own.";
+constexpr const char* kEnvironment =
+    "\n\nEnvironment:\n"
+    "  RAYA_DEVICE         the device, where there is no --device\n"
+    "  RAYA_BUILD_OPTIONS  added to every kernel's build options, and told in reports\n"
+    "  RAYA_TUNED          off: take the defaults, not what bench --tune has kept\n"
+    "  RAYA_PYTHON         the Python with matplotlib that draws plots; default: python3\n"
+    "  RAYA_MPIRUN         the command with which bench --ranks starts ranks; default: mpirun --bind-to none\n"
+    "  RAYA_RANK_TIMEOUT   seconds that a rank waits for the others; default: 600\n"
+    "  XDG_CACHE_HOME      what bench --tune keeps lies in raya/ there; default: ~/.cache";
+
 /// The next files to be opened would be taken for those that are closed. Nothing can be written to a descriptor for
 /// reading, so that what is lost on stdout is seen.
 void open_standard_files() {
@@ -96,9 +108,7 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     program.require_subcommand(1);
     program.set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
                              "Print version, commit and build");
-    program.footer(
-        "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's "
-        "own.");
+    program.footer(kExitCodes);
     add_render_command(program, ranks);
     add_explore_command(program);
     add_devices_command(program);
@@ -107,6 +117,9 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     add_study_command(program);
     add_verify_command(program);
     add_ping_command(program, ranks);
+    add_manual_command(program);
+    add_completion_command(program);
+    program.footer(std::string(kExitCodes) + kEnvironment);  // not of the commands, which take it when they are added
     refuse_many_ranks(program, ranks);
     try {
         return ranks.close(printed(ranks, parse_and_run(program, ranks, argc, argv)));

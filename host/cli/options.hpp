@@ -51,4 +51,11 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
     });
 }
 
+/// Names words that the value may be, for shells to offer. Help does not show them, and they refuse
+/// nothing. Where help calls the value by its words, as in "ring|bus", they need no naming.
+CLI::Option* offer_words(CLI::Option* option, const std::vector<std::string>& words);
+
+/// Those words, or none.
+std::vector<std::string> offered_words(CLI::Option& option);
+
 }  // namespace raya

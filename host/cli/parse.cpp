@@ -83,10 +83,12 @@ Links parse_links(const std::string& text) {
 }
 
 void add_device_option(CLI::App& command, std::string& device) {
-    add_value(command, "--device", device,
-              "OpenCL device: number, type (gpu, cpu) or part of a name or version, see raya devices; default: "
-              "RAYA_DEVICE, else the first GPU, else the first CPU")
-        ->type_name("NAME");
+    offer_words(
+        add_value(command, "--device", device,
+                  "OpenCL device: number, type (gpu, cpu) or part of a name or version, see raya devices; default: "
+                  "RAYA_DEVICE, else the first GPU, else the first CPU")
+            ->type_name("NAME"),
+        {"gpu", "cpu"});
 }
 
 }  // namespace raya

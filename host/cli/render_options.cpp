@@ -14,6 +14,28 @@
 namespace raya {
 namespace {
 
+// Each once, without what follows a colon.
+std::vector<std::string> mapping_names() {
+    std::vector<std::string> names;
+    for (const std::string& form : mapping_forms()) {
+        const std::string name = form.substr(0, form.find(':'));
+        if (names.empty() || names.back() != name) names.push_back(name);
+    }
+    names.insert(names.end(), {"dynamic", "hybrid"});
+    return names;
+}
+
+// What shells offer where help names a value by one word.
+void offer_render_words(CLI::App& command) {
+    std::vector<std::string> rings;
+    for (const Machine& machine : machines())
+        if (machine.kind == MachineKind::kRing) rings.push_back(machine.name);
+    offer_words(command.get_option("--machine"), rings);
+    offer_words(command.get_option("--mapping"), mapping_names());
+    offer_words(command.get_option("--format"), {"fp32", "spa22"});
+    offer_words(command.get_option("--lanes"), {"1", "4", "8", "16"});
+}
+
 void add_antialias_options(CLI::App& command, RenderOptions& o) {
     add_value(command, "--antialias", o.antialias,
               "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more points for pixels that "
@@ -100,6 +122,7 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
     add_tuned_option(command, o.no_tuned);
     add_value(command, "--kernel-dir", o.kernel_dir, "Read the kernels from this folder, while developing them")
         ->type_name("DIR");
+    offer_render_words(command);
 }
 
 namespace {

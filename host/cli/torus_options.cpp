@@ -21,6 +21,9 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     CLI::Option* machine = command.get_option("--machine");
     machine->description(machine->get_description() +
                          "; torus: nodes of 4 MB that hold voxels of the scene, see below");
+    std::vector<std::string> names;
+    for (const Machine& one : machines()) names.push_back(one.name);
+    offer_words(machine, names);
     const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type) {
         return add_value(command, name, value, text)->group(group)->type_name(type);
     };
@@ -61,10 +64,12 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; "
         "see docs/packets.md",
         "FILE.csv.gz");
-    add("--replay", t.replay,
-        "Beside the packets, write the render's history for SimGrid: FILE.xml, the platform, and FILE.replay, for "
-        "simgrid_replay; see docs/packets.md",
-        "simgrid");
+    offer_words(
+        add("--replay", t.replay,
+            "Beside the packets, write the render's history for SimGrid: FILE.xml, the platform, and FILE.replay, for "
+            "simgrid_replay; see docs/packets.md",
+            "simgrid"),
+        {"simgrid"});
     command
         .add_flag(
             "--async", t.async,

@@ -32,7 +32,7 @@ void* module_function(const std::string& name, const char* symbol) {
     const fs::path file = find_module(name + ".so");
     // Lazily: a module's libraries have far more functions than are called.
     void* const module = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    if (module == nullptr) throw ModuleError(loader_error());
+    if (module == nullptr) throw ModuleNeeds(loader_error());
     void* const function = ::dlsym(module, symbol);
     if (function == nullptr) throw ModuleError(loader_error());
     return function;

@@ -10,6 +10,11 @@ struct ModuleError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// It is there, but not what it needs: a library that may be installed.
+struct ModuleNeeds : ModuleError {
+    using ModuleError::ModuleError;
+};
+
 /// The function `symbol` of the module `name` (a file NAME.so), which stays loaded. It is looked for beside the
 /// program, in ../lib/raya/ and .. from there. Throws ModuleError.
 void* module_function(const std::string& name, const char* symbol);

@@ -46,8 +46,10 @@ void check_shape(int width, int height, std::size_t channels, std::size_t floats
             fmt::format("{} floats are no {} x {} image of {} channels", floats, width, height, channels));
 }
 
-[[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason) {
-    throw UserError(fmt::format("cannot write '{}': {}; name a .pfm file instead", path.string(), reason));
+[[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason, const std::string& remedy = "") {
+    const char* plain = lower_case_extension(path) == ".exr" ? ".pfm" : ".ppm";  // as many bits, without a library
+    throw UserError(
+        fmt::format("cannot write '{}': {}; {}name a {} file instead", path.string(), reason, remedy, plain));
 }
 
 /// Loads the module at the first call.
@@ -56,6 +58,8 @@ EncodePicture* encoder(const fs::path& path) {
         static auto* const function =
             reinterpret_cast<EncodePicture*>(module_function(kEncoderModule, kEncoderFunction));
         return function;
+    } catch (const ModuleNeeds& error) {
+        refuse_to_encode(path, error.what(), "remedy: install " RAYA_PICTURES_NEED ", or ");
     } catch (const ModuleError& error) {
         refuse_to_encode(path, error.what());
     }

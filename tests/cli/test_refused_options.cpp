@@ -142,9 +142,9 @@ TEST_CASE("where OpenImageIO does not load, PNG and EXR are refused before anyth
     std::ofstream(broken) << "no library";
     const Surroundings around{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
     const std::string scene = scene_file("planes");
-    for (const std::string image : {outputs / "x.png", outputs / "x.exr"})
-        check_refused(outputs, {"render", scene, "-o", image}, 2, {image, "libOpenImageIO", "name a .pfm file"},
-                      around);
+    for (const auto& [image, instead] : {std::pair{"x.png", "name a .ppm file"}, {"x.exr", "name a .pfm file"}})
+        check_refused(outputs, {"render", scene, "-o", outputs / image}, 2,
+                      {outputs / image, "libOpenImageIO", "remedy: install OpenImageIO ", instead}, around);
     for (const char* image : {"x.pfm", "x.ppm"}) {
         const Outcome run =
             run_raya({"render", scene, "-o", outputs / image, "--size", "4", "--pes", "4", "--lanes", "4"}, around);

@@ -1,5 +1,7 @@
 // How another OpenCL program uses the number layer: the harmonic series, which diverges, but not on a computer.
-//   harmonic FOLDER     FOLDER holds number/ and number/example/
+//   harmonic OPTIONS     in the folder of harmonic.cl; the options tell the compiler of kernels where number/ lies: -I
+//   ../..,
+//                        or $(pkg-config --cflags raya-number) where raya is installed
 // Needs OpenCL alone:  c++ -std=c++17 harmonic.cpp -lOpenCL
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
@@ -31,19 +33,20 @@ cl_device_id first_device() {
 
 /// The options that a format needs. Where the device's own division and fma are not to be relied on, the layer mends
 /// them.
-std::string build_options(cl_device_id device, const std::string& folder, int exponent_bits, int fraction_bits) {
+std::string build_options(cl_device_id device, const std::string& given, int exponent_bits, int fraction_bits) {
     cl_device_fp_config floats = 0;
     check(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "asking for CL_FP_*");
     const bool exact = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    return "-I " + folder + " -DRAYA_EXPONENT_BITS=" + std::to_string(exponent_bits) +
+    return given + " -DRAYA_EXPONENT_BITS=" + std::to_string(exponent_bits) +
            " -DRAYA_FRACTION_BITS=" + std::to_string(fraction_bits) +
            ((floats & CL_FP_FMA) != 0 ? "" : " -DRAYA_EXACT_FMA=0") +
            (exact ? " -cl-fp32-correctly-rounded-divide-sqrt" : " -DRAYA_EXACT_DIVIDE=0");
 }
 
-cl_kernel build(cl_context context, cl_device_id device, const std::string& folder, const std::string& options) {
-    std::ifstream file(folder + "/number/example/harmonic.cl");
+cl_kernel build(cl_context context, cl_device_id device, const std::string& options) {
+    std::ifstream file("harmonic.cl");
     const std::string source{std::istreambuf_iterator<char>(file), {}};
+    if (source.empty()) check(CL_INVALID_VALUE, "reading harmonic.cl, which lies in another folder,");
     const char* text = source.c_str();
     cl_int error = CL_SUCCESS;
     cl_program program = clCreateProgramWithSource(context, 1, &text, nullptr, &error);
@@ -80,10 +83,8 @@ void run(cl_context context, cl_command_queue queue, cl_kernel kernel, const cha
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: %s FOLDER (the one that holds number/)\n", argv[0]);
-        return 2;
-    }
+    std::string given;
+    for (int i = 1; i < argc; ++i) given += std::string(argv[i]) + ' ';
     struct {
         const char* name;
         int exponent_bits, fraction_bits;
@@ -95,8 +96,8 @@ int main(int argc, char** argv) {
     cl_command_queue queue = clCreateCommandQueue(context, device, 0, &error);
     check(error, "making a queue");
     for (const auto& format : formats) {
-        const std::string options = build_options(device, argv[1], format.exponent_bits, format.fraction_bits);
-        run(context, queue, build(context, device, argv[1], options), format.name);
+        const std::string options = build_options(device, given, format.exponent_bits, format.fraction_bits);
+        run(context, queue, build(context, device, options), format.name);
     }
     clReleaseCommandQueue(queue);
     clReleaseContext(context);

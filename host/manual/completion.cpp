@@ -1,0 +1,43 @@
+#include "host/manual/completion.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace raya {
+
+const std::vector<std::string>& completed_shells() {
+    static const std::vector<std::string> shells = {"bash", "zsh", "fish"};
+    return shells;
+}
+
+std::string completion_script(const CommandText& program, const std::string& shell) {
+    if (shell == "bash") return bash_completion(program);
+    if (shell == "zsh") return zsh_completion(program);
+    if (shell == "fish") return fish_completion(program);
+    throw std::logic_error("no completion for " + shell);
+}
+
+std::string shell_quoted(const std::string& text) {
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& words_and_bodies) {
+    std::vector<std::pair<std::string, std::string>> cases;  // patterns and their body
+    for (const auto& [words, body] : words_and_bodies) {
+        const auto same =
+            std::find_if(cases.begin(), cases.end(), [&, &its = body](const auto& one) { return one.second == its; });
+        if (same == cases.end())
+            cases.emplace_back(shell_quoted(words), body);
+        else
+            same->first += '|' + shell_quoted(words);
+    }
+    std::string text;
+    for (const auto& [patterns, body] : cases) text += fmt::format("    {})\n{}        ;;\n", patterns, body);
+    return text;
+}
+
+}  // namespace raya

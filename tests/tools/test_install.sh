@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# What `cmake --install` makes: it runs without the sources, from wherever it lies, finds its modules, and other projects find the number layer.
+#   test_install.sh BUILD
+set -euo pipefail
+build=$(readlink -f "$1")
+root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
+
+cmake --install "$build" --prefix "$scratch/first place" >"$scratch/log" || fail "$(<"$scratch/log")"
+mv "$scratch/first place" "$scratch/prefix"
+prefix=$scratch/prefix
+mkdir "$scratch/home"
+away() {  # away COMMAND...: sets code and out; where nothing is set that the build has set
+    code=0
+    out=$(cd "$scratch/home" && env -i HOME="$scratch/home" PATH="$prefix/bin:/usr/bin:/bin" POCL_CACHE_DIR="$POCL_CACHE_DIR" "$@" 2>&1) || code=$?
+}
+expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"; }  # expect CODE TEXT
+
+# Texts: nothing leads back to the sources or the build. (Compilers write paths into programs with debugging information alone.)
+found=$(grep -rIlF -e "$root/" -e "$build" "$prefix" || true)
+[[ -z $found ]] || fail "the folder of the sources stands in: $found"
+! objdump -p "$prefix/bin/raya" "$prefix"/lib/raya/*.so | grep -E "R(UN)?PATH.*($root|$build)" || fail "libraries are looked for where they were built"
+
+# The program, its modules, scenes and documents.
+away raya --version
+expect 0 "raya "
+away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
+expect 0 "(474a384374e81c5144a0e5405232a750)"
+[[ $(head -c 4 "$scratch/home/centre.png" | tail -c 3) == PNG ]] || fail "no PNG"
+cmp <("$build/raya" manual render) "$prefix/share/man/man1/raya-render.1" || fail "another page"
+for shell in bash-completion/completions/raya zsh/site-functions/_raya fish/vendor_completions.d/raya.fish; do
+    [[ -s $prefix/share/$shell ]] || fail "no share/$shell"
+done
+for scene in "$root"/scenes/*.nff; do
+    cmp "$scene" "$prefix/share/raya/scenes/$(basename "$scene")" || fail "no $scene"
+done
+doc=$prefix/share/doc/raya
+[[ $(<"$doc/LICENSE") == *"the raya authors"* ]] || fail "no licence"
+while IFS=: read -r page link; do  # [..](LINK) in a page, without #.. and addresses
+    [[ -e $(dirname "$page")/${link%%#*} ]] || fail "$page leads to $link, which is not there"
+done < <(grep -roP --include='*.md' '\]\(\K(?!https?:|#)[^)]+' "$doc")
+
+# The number layer, as another project finds it: a copy of the example, and a kernel with the options that pkg-config prints.
+export PKG_CONFIG_PATH=$prefix/share/pkgconfig
+pkg-config --validate raya-number || fail "pkg-config does not know raya-number"
+[[ $(pkg-config --modversion raya-number) == "$("$build/raya" --version | cut -d' ' -f2)" ]] || fail "another version"
+options=$(pkg-config --cflags raya-number)
+mkdir "$scratch/other"
+cp "$doc"/kernels/number/example/harmonic.* "$scratch/other"
+[[ -z $(find "$prefix/include" -type f ! -name '*.clh') ]] || fail "more than headers in include"
+# shellcheck disable=SC2046  # words
+(cd "$scratch/other" && ${CXX:-c++} -std=c++17 -O1 harmonic.cpp -o harmonic $(pkg-config --libs OpenCL))
+# shellcheck disable=SC2086  # words
+code=0 out=$(cd "$scratch/other" && env POCL_CACHE_DIR="$POCL_CACHE_DIR" ./harmonic $options 2>&1) || code=$?
+expect 0 "8191 terms, sum 9.848633"
+[[ $out == *"64 terms, sum 5.0625"* && $out == *"512 terms, sum 7.085938"* ]] || fail "other sums: $out"
+code=0 out=$(cd "$scratch/other" && ./harmonic 2>&1) || code=$?
+expect 1 "OpenCL error"  # without them there is no number/number.clh
+
+# Without the module of pictures, and with one whose libraries are missing, a picture is refused with what helps, and PPM is written.
+rm "$prefix/lib/raya/raya_pictures.so"
+away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
+expect 2 "raya_pictures.so lies neither beside the program nor in"
+expect 2 "name a .ppm file instead"
+echo 'extern int nowhere(void); int raya_encode_picture(void) { return nowhere(); }' >"$scratch/m.c"
+echo 'int nowhere(void) { return 0; }' >"$scratch/n.c"
+cc -shared -fPIC "$scratch/n.c" -o "$scratch/libOpenImageIO.so.2.4" -Wl,-soname,libOpenImageIO.so.2.4
+cc -shared -fPIC "$scratch/m.c" -o "$prefix/lib/raya/raya_pictures.so" "$scratch/libOpenImageIO.so.2.4"
+sed -i "s/libOpenImageIO\.so\.2\.4/libOpenImageIO.so.0.0/" "$prefix/lib/raya/raya_pictures.so"
+away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
+expect 2 "libOpenImageIO.so.0.0"
+expect 2 "remedy: install OpenImageIO "
+away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.ppm
+expect 0 "(474a384374e81c5144a0e5405232a750)"
+echo "an installation: as expected"

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""What `raya manual` makes, as man shows it: all of --help, word for word, without a warning of man's. 77: no man here.
+  test_manual.py RAYA FOLDER     FOLDER holds the pages that the build has made: raya.1 and man1/"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+raya, built = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
+if not shutil.which("man"):
+    print("skipped: no man (tools/setup --package)")
+    sys.exit(77)
+faults = []
+PLAIN = {**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "900", "MANOPT": "--no-hyphenation --no-justification", "MAN_KEEP_FORMATTING": "",
+         "MANROFFOPT": "-c", "PAGER": "cat", "GROFF_NO_SGR": "1"}
+
+
+def squeezed(text):
+    return re.sub(r"\s+", " ", text)
+
+
+def shown(page):
+    """What man shows of a file, without bold and underlined, and what it complains of."""
+    run = subprocess.run(["man", "--warnings", "-l", page], capture_output=True, text=True, env=PLAIN)
+    if run.returncode or run.stderr:
+        faults.append(f"{page}: man ends with {run.returncode}: {run.stderr}")
+    return squeezed(re.sub(".\x08", "", run.stdout))
+
+
+def help_of(command):
+    return subprocess.run([raya, *command, "--help"], capture_output=True, text=True, check=True).stdout
+
+
+def entries(text):
+    """(names, help) of every option and command in a help text."""
+    for line in re.sub(r"\n {20,}(?=\S)", "  ", text).split("\n"):
+        match = re.match(r"  (\S.*?)\s{2,}(\S.*)", line)
+        if match:
+            yield match[1], squeezed(match[2])
+
+
+def commands_in(text):
+    part = re.search(r"\nSubcommands:\n(.*?)(\n\n|$)", text, re.S)
+    return [line.split()[0] for line in part[1].split("\n")] if part else []
+
+
+def hold(page, command, below=False):
+    text = help_of(command)
+    for names, said in entries(text):
+        if below and "--help" in names:
+            continue
+        for name in re.findall(r"(?<!\S)--?[a-z][a-z-]*", names.replace(",", " ")):
+            if not re.search(rf"(?<![\w-]){name}(?![\w-])", page):
+                faults.append(f"{' '.join(command)}: no {name}")
+        if said not in page:
+            faults.append(f"{' '.join(command)} {names}: '{said}' is not in the page")
+    return commands_in(text)
+
+
+def run():
+    count = 0
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([raya, "manual", "-o", folder], check=True)
+        names = {page.name for page in pathlib.Path(folder).iterdir()}
+        commands = hold(shown(f"{folder}/raya.1"), [])
+        if names != {"raya.1"} | {f"raya-{one}.1" for one in commands}:
+            faults.append(f"pages of other commands: {sorted(names)}")
+        for one in commands:
+            page = shown(f"{folder}/raya-{one}.1")
+            for below in hold(page, [one]):
+                hold(page, [one, below], below=True)
+                count += 1
+            alone = subprocess.run([raya, "manual", one], capture_output=True, text=True, check=True).stdout
+            if alone != pathlib.Path(f"{folder}/raya-{one}.1").read_text():
+                faults.append(f"raya manual {one}: another page than the file")
+            if alone != (built / "man1" / f"raya-{one}.1").read_text():
+                faults.append(f"raya-{one}.1 of the build is not what the program says")
+        if (built / "raya.1").read_text() != pathlib.Path(f"{folder}/raya.1").read_text():
+            faults.append("raya.1 of the build is not what the program says")
+        if "EXIT CODES 0 done, 2 bad option" not in shown(str(built / "raya.1")):
+            faults.append("raya.1: no exit codes")
+        count += len(names)
+    refused = subprocess.run([raya, "manual", "rendr"], capture_output=True, text=True)
+    if refused.returncode != 2 or "no command rendr (did you mean render?)" not in refused.stderr:
+        faults.append(f"rendr: {refused}")
+    return count
+
+
+pages = run()
+for fault in faults:
+    print(fault)
+print(f"{pages} commands, {len(faults)} faults")
+sys.exit(1 if faults else 0)

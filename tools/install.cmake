@@ -1,0 +1,33 @@
+# What `cmake --install build --prefix DIR` makes, and of that a Debian package: tools/package. Everything is found from where the
+# program lies, so that the folder may be moved.
+include(GNUInstallDirs)
+set(doc ${CMAKE_INSTALL_DATADIR}/doc/raya)
+
+install(TARGETS raya RUNTIME)
+# Beside the program's own name: where host/files/module.cpp looks, which no multiarch folder is.
+install(TARGETS raya_pictures LIBRARY DESTINATION lib/raya)
+if(TARGET raya_mpi)
+    install(TARGETS raya_mpi LIBRARY DESTINATION lib/raya)
+endif()
+
+install(DIRECTORY ${page_folder}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${completion_folder}/raya DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${completion_folder}/_raya DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES ${completion_folder}/raya.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+
+install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES_MATCHING PATTERN "*.nff" PATTERN "README.md")
+# Documents lie to each other as they do here, so that their links hold.
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${doc})
+install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|yml)$")
+install(FILES scenes/README.md DESTINATION ${doc}/scenes)
+install(FILES kernels/README.md DESTINATION ${doc}/kernels)
+install(FILES kernels/number/README.md DESTINATION ${doc}/kernels/number)
+
+# The number layer, for other projects: headers, `pkg-config --cflags raya-number` for a kernel's build options, and an example.
+set(number ${CMAKE_INSTALL_INCLUDEDIR}/raya)
+set(number_from_prefix ${number})
+configure_file(tools/raya-number.pc.in raya-number.pc @ONLY)
+file(GLOB number_headers CONFIGURE_DEPENDS kernels/number/*.clh)
+install(FILES ${number_headers} DESTINATION ${number}/number)
+install(FILES kernels/number/example/harmonic.cpp kernels/number/example/harmonic.cl DESTINATION ${doc}/kernels/number/example)
+install(FILES ${PROJECT_BINARY_DIR}/raya-number.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)
