@@ -31,3 +31,29 @@ file(GLOB number_headers CONFIGURE_DEPENDS kernels/number/*.clh)
 install(FILES ${number_headers} DESTINATION ${number}/number)
 install(FILES kernels/number/example/harmonic.cpp kernels/number/example/harmonic.cl DESTINATION ${doc}/kernels/number/example)
 install(FILES ${PROJECT_BINARY_DIR}/raya-number.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+
+# The Debian package. CPack packs what is installed of what is built already; debhelper would compile all of it once more, in a
+# source package that nobody asks for, and would want the version in a file of its own.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "the raya authors")
+set(CPACK_PACKAGE_CONTACT "the raya authors <raya@example.org>")  # nobody has an address; tools/debian.cmake takes that of who packs
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray tracing on models of distributed-memory array machines")
+set(CPACK_PACKAGE_DESCRIPTION
+    "raya renders NFF scenes on models of array machines of the literature, a
+ring of DSPs and a torus of transputers, written as OpenCL kernels, to the
+same image bit for bit on every device. It measures how evenly their loads
+are spread, and verifies OpenCL devices, their drivers and compilers by
+single operations, hits and whole images.
+
+PNG and OpenEXR files are written where OpenImageIO is installed, PPM and
+PFM in any case.")
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_THREADS 0)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/tools/debian.cmake)
+set(CPACK_RAYA_SOURCES ${PROJECT_SOURCE_DIR})
+include(CPack)

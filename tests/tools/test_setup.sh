@@ -43,7 +43,7 @@ expect 2 "unknown option '--nonsense'"
 run_setup --studies --nonsense --gpu
 expect 2 "unknown option '--nonsense'"
 run_setup --gpu --print --package
-expect 0 "$line g++ cmake" "oclgrind clang-15 libclc-15 intel-opencl-icd lintian man-db zsh fish"
+expect 0 "$line g++ cmake" "oclgrind clang-15 libclc-15 intel-opencl-icd dpkg-dev lintian man-db zsh fish"
 [[ $out != *debootstrap* ]] || { echo "FAILED: a group that nobody named"; exit 1; }
 
 # Nothing is missing.
@@ -62,7 +62,7 @@ expect 1 "neither root nor sudo" "$line chromium"
 run_setup --gpu
 expect 1 "neither root nor sudo" "$line clang-15 libclc-15 intel-opencl-icd"
 run_setup --package
-expect 1 "neither root nor sudo" "$line lintian man-db zsh fish"
+expect 1 "neither root nor sudo" "$line dpkg-dev lintian man-db zsh fish"
 run_setup --bare-root --gpu --studies --bare-root
 expect 1 "neither root nor sudo" "$line debootstrap clang-15 libclc-15 intel-opencl-icd libsimgrid-dev"
 

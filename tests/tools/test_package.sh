@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# tools/package: what it packs, what it depends on, Debian's checks, and that the same build makes the same bytes. 77: no tools for packages.
+#   test_package.sh BUILD
+set -euo pipefail
+build=$(readlink -f "$1")
+root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
+for tool in cpack dpkg-shlibdeps dpkg-deb; do
+    command -v "$tool" >/dev/null || { echo "skipped: no $tool"; exit 77; }
+done
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
+package() { code=0; out=$(env -u DEBEMAIL -u DEBFULLNAME "$root/tools/package" "$@" 2>&1) || code=$?; }
+expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"; }  # expect CODE TEXT
+
+mkdir "$scratch"/{one,two,whole}
+package --build "$build" -o "$scratch/one"
+expect 0 "$scratch/one/raya_"
+deb=$(echo "$scratch"/one/raya_*_*.deb)
+version=$("$build/raya" --version | cut -d' ' -f2)
+[[ $deb == */raya_${version}_$(dpkg --print-architecture).deb ]] || fail "called $deb"
+if command -v lintian >/dev/null; then
+    [[ $out != *"without lintian"* ]] || fail "lintian is here: $out"
+else
+    expect 0 "without lintian's checks"
+fi
+package --build "$build" -o "$scratch/two"
+expect 0 "raya_"
+cmp "$deb" "$scratch"/two/raya_*.deb || fail "the same build makes another package"
+
+# Depends: the program's libraries; OpenImageIO and a driver are recommended, MPI is suggested.
+field() { dpkg-deb -f "$deb" "$1"; }
+[[ $(field Version) == "$version" ]] || fail "version $(field Version)"
+[[ $(field Depends) == *ocl-icd-libopencl1* && $(field Depends) != *openimageio* && $(field Depends) != *mpi* ]] || fail "Depends: $(field Depends)"
+[[ $(field Recommends) == *"libopenimageio"*"pocl-opencl-icd | opencl-icd" ]] || fail "Recommends: $(field Recommends)"
+[[ ! -e $build/raya_mpi.so || $(field Suggests) == *mpi* ]] || fail "Suggests: $(field Suggests)"
+[[ $(field Maintainer) == "the raya authors <raya@example.org>" ]] || fail "Maintainer: $(field Maintainer)"
+
+dpkg-deb -x "$deb" "$scratch/whole"
+for file in bin/raya lib/raya/raya_pictures.so share/man/man1/raya.1.gz share/man/man1/raya-render.1.gz share/raya/scenes/centre.nff \
+    share/bash-completion/completions/raya share/zsh/vendor-completions/_raya share/fish/vendor_completions.d/raya.fish share/doc/raya/copyright \
+    share/doc/raya/changelog.gz share/doc/raya/licences/libcli11-dev include/raya/number/number.clh share/pkgconfig/raya-number.pc; do
+    [[ -s $scratch/whole/usr/$file ]] || fail "no /usr/$file"
+done
+zcat "$scratch/whole/usr/share/doc/raya/changelog.gz" | head -n 1 | grep -q "^raya ($version) " || fail "another version in changelog.gz"
+[[ $(PKG_CONFIG_PATH=$scratch/whole/usr/share/pkgconfig pkg-config --modversion raya-number) == "$version" ]] || fail "another version of raya-number"
+
+# Who packs it is named; wrong use, and a build that is none: nothing is written.
+code=0 out=$(DEBFULLNAME="A Packer" DEBEMAIL=packer@debian.example "$root/tools/package" --build "$build" -o "$scratch/two" 2>&1) || code=$?
+expect 0 "raya_"
+[[ $(dpkg-deb -f "$scratch"/two/raya_*.deb Maintainer) == "A Packer <packer@debian.example>" ]] || fail "another maintainer"
+package --nonsense
+expect 2 "unknown option"
+package --build "$build" -o "$scratch/none"
+expect 2 "is no folder"
+package --build "$scratch" -o "$scratch"
+expect 3 "no $scratch/raya"
+[[ -z $(find "$scratch" -maxdepth 2 -name 'tmp.*' -o -maxdepth 1 -name '*.deb') ]] || fail "files in progress were left"
+# An error that lintian finds is one: a package without terms.
+if command -v lintian >/dev/null; then
+    mkdir -p "$scratch/bad"
+    cp -a "$scratch/whole" "$scratch/bad/files"
+    dpkg-deb -e "$deb" "$scratch/bad/files/DEBIAN"
+    rm "$scratch/bad/files/usr/share/doc/raya/copyright"
+    dpkg-deb --root-owner-group -b "$scratch/bad/files" "$scratch/bad/raya.deb" >/dev/null
+    ! lintian --fail-on error --allow-root "$scratch/bad/raya.deb" >/dev/null || fail "lintian puts up with a package without terms"
+fi
+echo "tools/package: as expected"
