@@ -18,6 +18,7 @@
 #include "host/files/whole_file.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -76,7 +77,7 @@ Exploration exploration_of(const ExploreCommand& command, const RingSettings& se
             .command = command_of(command, settings),
             .settings = fmt::format("{}, {}, {} bounces{}", settings.machine.name, format_name(settings.format),
                                     settings.bounces, accel),
-            .made = fmt::format("Made by raya {} on {} ({}, driver {}).", RAYA_VERSION, device.name, device.platform,
+            .made = fmt::format("Made by raya {} on {} ({}, driver {}).", raya_version(), device.name, device.platform,
                                 device.driver),
             .machine = settings.machine,
             .mapping = settings.mapping,
