@@ -89,8 +89,8 @@ TEST_CASE("words that do not belong there are refused with a hint at the help", 
                           {{"--pes", "4", "--pes", "5"}, {"--pes: takes one value, not 2", "--help"}}});
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    check_refused(outputs, {}, 2, {"raya: name a command: render, devices", "see raya --help"});
-    check_refused(outputs, {"frobnicate"}, 2, {"raya: no command frobnicate; there are render, devices"});
+    check_refused(outputs, {}, 2, {"raya: name a command: render, explore, devices", "see raya --help"});
+    check_refused(outputs, {"frobnicate"}, 2, {"raya: no command frobnicate; there are render, explore, devices"});
     check_refused(outputs, {"rendr"}, 2, {"raya: no command rendr (did you mean render?); there are"});
     check_refused(outputs, {"verify", "--ful"}, 2, {"no option --ful (did you mean --full?); see raya verify --help"});
     check_refused(outputs, {"study", "-o", "x", "fig7"}, 2, {"-o stands before fig7", "let it follow"});
