@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "host/cli/bench_ranks.hpp"
 #include "host/cli/bench_rows.hpp"
@@ -21,6 +20,7 @@
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/standard_streams.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/kernels/operation_rates.hpp"
@@ -88,13 +88,6 @@ void print_operations(Session& session, const std::vector<NumberFormat>& formats
                format_name(formats.front()), text_table(table));
 }
 
-std::vector<NumberFormat> parse_formats(const std::string& list) {
-    std::vector<NumberFormat> formats;
-    std::istringstream words(list);
-    for (std::string word; std::getline(words, word, ',');) formats.push_back(parse_format(word));
-    return formats;
-}
-
 // What rows that leave lanes and group open have taken, where it was tuned.
 void print_tuned(const std::vector<BenchRow>& rows) {
     std::set<std::string> files;
@@ -110,7 +103,8 @@ BenchReport checked_files(const BenchCommand& command) {
     if (!command.report.empty()) check_writable(command.report);
     if (command.baseline.empty()) return {};
     std::error_code error;  // of a file that is not there, and so not the other one
-    if (!command.report.empty() && std::filesystem::equivalent(command.report, command.baseline, error))
+    const bool reads_stdin = is_standard_stream(command.baseline);
+    if (!command.report.empty() && !reads_stdin && std::filesystem::equivalent(command.report, command.baseline, error))
         throw UserError(
             fmt::format("{}: named by --report and --compare; a baseline is not written over by the run "
                         "that is held against it: name another report",
@@ -209,12 +203,17 @@ void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
 }
 
 Scene scene_of(const BenchCommand& command) {
-    return command.render.scene.empty() ? parse_nff(embedded_files().at("scenes/spheres.nff"), "scenes/spheres.nff")
-                                        : read_scene(command.render.scene, command.render.strict).scene;
+    Scene scene = command.render.scene.empty()
+                      ? parse_nff(embedded_files().at("scenes/spheres.nff"), "scenes/spheres.nff")
+                      : read_scene(command.render.scene, command.render.strict).scene;
+    change_view(command.render.view, scene);
+    return scene;
 }
 
 void bench(const CLI::App& parsed, BenchCommand command) {
     check_tune_options(parsed, command.tune);
+    if (command.tune.wanted && is_standard_stream(command.render.scene))
+        throw UserError("bench --tune -: every candidate reads the scene in a process of its own; name a file");
     if (command.tune.wanted) return bench_tune(command.render, command.ways, command.report, command.tune);
     refuse_ignored(parsed, command);
     if (command.samples < 1 || command.samples > 1000)
@@ -256,7 +255,8 @@ void add_bench_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("bench", "Measure rays per second by kernel, lanes and format on this device");
     const auto options = std::make_shared<BenchCommand>();
-    add_value(*command, "SCENE", options->render.scene, "Scene in NFF; default: 30 spheres and a plane, 512 x 512")
+    add_value(*command, "SCENE", options->render.scene,
+              "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512")
         ->type_name("SCENE.nff");
     add_render_options(*command, options->render);
     add_value(*command, "--ways", options->ways,
@@ -280,7 +280,9 @@ void add_bench_command(CLI::App& program) {
               "Samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")
         ->capture_default_str();
-    add_value(*command, "--report", options->report, "Write the rows, for a later --compare")->type_name("FILE.json");
+    add_value(*command, "--report", options->report,
+              "Write the rows, for a later --compare; -: stdout, and the tables on stderr")
+        ->type_name("FILE.json");
     add_value(*command, "--compare", options->baseline,
               "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
               "image another one")

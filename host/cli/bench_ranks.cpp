@@ -10,6 +10,7 @@
 
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/standard_streams.hpp"
 #include "host/files/temporary_folder.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/table.hpp"
@@ -47,7 +48,8 @@ using Rows = std::vector<RankRow>;
 
 // What render is given beside scene and size: all that was given to bench and is not its own.
 Words passed_on(const CLI::App& parsed) {
-    const std::set<std::string> own = {"help", "size", "samples", "report", "ranks"};
+    std::set<std::string> own = {"help", "size", "samples", "report", "ranks"};
+    own.insert(view_option_names().begin(), view_option_names().end());  // in the scene's file
     Words words;
     for (const CLI::Option* option : parsed.get_options()) {
         if (option->count() == 0 || option->get_lnames().empty() || own.contains(option->get_lnames()[0])) continue;
@@ -72,7 +74,7 @@ class RowMaker {
           file_(options.scene),
           torus_(machine_named(options.machine).kind == MachineKind::kTorus),
           folder_(folder) {
-        if (!file_.empty()) return;
+        if (!file_.empty() && !is_standard_stream(file_) && !options.view.given()) return;
         file_ = folder / scene.name;
         write_whole_file(file_, write_nff(scene));
     }

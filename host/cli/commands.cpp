@@ -18,6 +18,7 @@
 #include "host/error.hpp"
 #include "host/files/interruption.hpp"
 #include "host/files/say.hpp"
+#include "host/files/standard_streams.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/version.hpp"
 
@@ -76,6 +77,7 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
 int printed(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    if (stdout_is_for_file()) return code;  // what is printed goes to stderr, where it may be lost
     const std::string reason = errno != 0 ? ": " + std::generic_category().message(errno) : "";
     ranks.fail(fmt::format("cannot write to stdout{}; name a place with room for it", reason), kExitUserError);
     return code == kExitOk ? kExitUserError : code;
@@ -112,6 +114,7 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     add_render_command(program, ranks);
     add_explore_command(program);
     add_devices_command(program);
+    add_info_command(program);
     add_generate_command(program);
     add_bench_command(program);
     add_study_command(program);

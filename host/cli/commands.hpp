@@ -25,6 +25,7 @@ void add_render_command(CLI::App& program, Ranks& ranks);
 void add_devices_command(CLI::App& program);
 void add_explore_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
+void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_study_command(CLI::App& program);
 void add_verify_command(CLI::App& program);

@@ -15,6 +15,7 @@
 #include "host/explore/explorer.hpp"
 #include "host/explore/figures.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/standard_streams.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
@@ -31,9 +32,11 @@ struct ExploreCommand {
 
 void check_page(const ExploreCommand& command) {
     const std::string& page = command.page;
-    if (!page.ends_with(".html") && !page.ends_with(".htm") && !page.starts_with("/dev/"))
+    const bool named = page.ends_with(".html") || page.ends_with(".htm");
+    if (!named && !page.starts_with("/dev/") && !is_standard_stream(page))
         throw UserError(fmt::format("-o {}: what is written is a page for a browser; let the name end in .html", page));
     check_writable(page);
+    if (is_standard_stream(command.render.scene) || is_standard_stream(page)) return;
     std::error_code error;
     if (std::filesystem::canonical(command.render.scene, error) == written_file(page) && !error)
         throw UserError(fmt::format("-o {}: that is the scene; name another file", page));
@@ -66,6 +69,7 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     add("--sampling", o.sampling == "centres" ? "" : o.sampling);
     add("--accel", o.accel);
     add("--pe-memory", o.pe_memory ? fmt::format("{}", *o.pe_memory) : "");
+    for (const auto& [option, value] : o.view.words()) add(option.c_str(), value);
     return text;
 }
 
@@ -73,7 +77,7 @@ Exploration exploration_of(const ExploreCommand& command, const RingSettings& se
                            const RingResult& result) {
     const std::string accel =
         settings.accel.kind == AccelKind::kNone ? "" : ", accelerator " + accel_text(settings.accel);
-    return {.scene = command.render.scene,
+    return {.scene = input_name(command.render.scene),
             .command = command_of(command, settings),
             .settings = fmt::format("{}, {}, {} bounces{}", settings.machine.name, format_name(settings.format),
                                     settings.bounces, accel),
@@ -89,6 +93,7 @@ void explore(const ExploreCommand& command) {
     check_page(command);
     std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
     SceneInput input = read_scene(command.render.scene, command.render.strict);
+    change_view(command.render.view, input.scene);
     check_explorable(image_size(command.render, input.scene));
     const RingSettings settings = settings_of(command, input.scene);
     warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
@@ -106,10 +111,10 @@ void explore(const ExploreCommand& command) {
     bar.reset();
     if (command.quiet) return;
     const Load load = figures_of(result.cost(), settings.mapping, settings.machine).load;
-    fmt::print("{}: {} x {} pixels, opens with {} on {} PEs: u = {:.3f}, speed-up {:.1f}\n", command.render.scene,
-               settings.mapping.width, settings.mapping.height, mapping_text(settings.mapping), settings.mapping.pes,
-               load.imbalance, load.speedup);
-    fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", command.page,
+    fmt::print("{}: {} x {} pixels, opens with {} on {} PEs: u = {:.3f}, speed-up {:.1f}\n",
+               input_name(command.render.scene), settings.mapping.width, settings.mapping.height,
+               mapping_text(settings.mapping), settings.mapping.pes, load.imbalance, load.speedup);
+    fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", output_name(command.page),
                static_cast<double>(page.size()) / 1e3);
 }
 
@@ -119,11 +124,11 @@ void add_explore_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "explore", "Render once, and write a page in which mapping, offset and number of PEs can be dragged");
     const auto options = std::make_shared<ExploreCommand>();
-    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
+    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
         ->required()
         ->type_name("SCENE.nff");
     add_value(*command, "-o,--output", options->page,
-              "Page to write: one file for a browser, below 1 MB, that needs no network")
+              "Page to write: one file for a browser, below 1 MB, that needs no network; -: stdout")
         ->required()
         ->type_name("FILE.html");
     add_render_options(*command, options->render, false);

@@ -34,7 +34,7 @@ void write_scene(const GenerateOptions& options, Make&& make) {
 
 CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help) {
     CLI::App* kind = command.add_subcommand(name, help);
-    add_value(*kind, "-o,--output", options.output, "NFF file to write")->required()->type_name("SCENE.nff");
+    add_value(*kind, "-o,--output", options.output, "NFF file to write; -: stdout")->required()->type_name("SCENE.nff");
     return kind;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <sstream>
 
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
@@ -49,6 +50,13 @@ Accel parse_accel(const std::string& text) {
         throw UserError(
             fmt::format("--accel {}: must be none, bvh, grid or grid:AxBxC, A B C voxels along x, y and z", text));
     return {.kind = AccelKind::kGrid, .divisions = Divisions{sides[0], sides[1], sides[2]}};
+}
+
+std::vector<NumberFormat> parse_formats(const std::string& list) {
+    std::vector<NumberFormat> formats;
+    std::istringstream words(list);
+    for (std::string word; std::getline(words, word, ',');) formats.push_back(parse_format(word));
+    return formats;
 }
 
 AntialiasMethod parse_antialias(const std::string& text) {

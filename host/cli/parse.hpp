@@ -7,6 +7,7 @@
 
 #include "host/accel/grid.hpp"
 #include "host/machine/image_size.hpp"
+#include "host/machine/number_format.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
@@ -30,6 +31,9 @@ std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const 
 
 /// --accel: "none", "grid" or "grid:AxBxC". UserError as above.
 Accel parse_accel(const std::string& text);
+
+/// Formats with commas between them, as --format of one takes them.
+std::vector<NumberFormat> parse_formats(const std::string& list);
 
 // One word each; UserError names the option and the legal ones.
 

@@ -24,19 +24,24 @@ void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) 
 void add_render_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
     const auto options = std::make_shared<RenderCommand>();
-    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it")
+    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
         ->required()
         ->type_name("SCENE.nff");
-    add_value(*command, "-o,--output", options->image, "Image to write: .png or .ppm (sRGB), .exr or .pfm (linear)")
+    add_value(
+        *command, "-o,--output", options->image,
+        "Image to write: .png, .tif, .ppm or .jpg (8-bit codes; JPEG of quality 95, lossy), .exr or .pfm (linear); "
+        "-: stdout, as PPM. What goes to stdout, of this or another file, leaves the summary to stderr")
         ->required()
         ->type_name("IMAGE");
+    add_tone_options(*command, options->tone);
     add_render_options(*command, options->render);
     add_torus_options(*command, options->torus);
-    add_value(*command, "--cost", options->cost, "Write the modelled cycles of each pixel as an image, .exr or .pfm")
+    add_value(*command, "--cost", options->cost,
+              "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM")
         ->type_name("FILE.exr");
     add_value(*command, "--mask", options->mask, "Write which pixels were supersampled, white on black")
         ->type_name("IMAGE");
-    add_value(*command, "--report", options->report, "Write everything that was counted and measured")
+    add_value(*command, "--report", options->report, "Write everything that was counted and measured; -: stdout")
         ->type_name("FILE.json");
     command->add_flag("--profile", options->profile,
                       "Print launches and times of every labelled command, the builds, and how near each kernel came "

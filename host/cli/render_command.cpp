@@ -10,6 +10,7 @@
 #include "host/files/json.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/kernels/device_peak.hpp"
+#include "host/ranks/launch.hpp"
 #include "host/report/profile_table.hpp"
 
 namespace raya {
@@ -18,16 +19,20 @@ namespace {
 // A file that is named twice would be written over by the other one, or over the scene.
 void check_distinct(const std::string& scene, const std::vector<std::string>& outputs) {
     std::error_code error;
-    std::set<std::filesystem::path> seen = {std::filesystem::canonical(scene, error)};
-    for (const std::string& file : outputs)
-        if (!file.empty() && !file.starts_with("/dev/") && !seen.insert(written_file(file)).second)
-            throw UserError(fmt::format(
-                "{}: named twice; scene, image, cost image, mask, report, packets and trace must be different files",
-                file));
+    std::set<std::filesystem::path> seen;
+    if (!is_standard_stream(scene)) seen.insert(std::filesystem::canonical(scene, error));
+    for (const std::string& file : outputs) {
+        if (file.empty() || file.starts_with("/dev/") || seen.insert(written_file(file)).second) continue;
+        if (is_standard_stream(file))
+            throw UserError("- is given twice: only one file can go to stdout; name files for the others");
+        throw UserError(fmt::format(
+            "{}: named twice; scene, image, cost image, mask, report, packets and trace must be different files",
+            file));
+    }
 }
 
 void check_packets(const std::string& file) {
-    if (!file.ends_with(".gz") && !file.starts_with("/dev/"))
+    if (!file.ends_with(".gz") && !file.starts_with("/dev/") && !is_standard_stream(file))
         throw UserError(
             fmt::format("--packets {}: what is written is compressed with gzip; let the name end in .csv.gz", file));
     check_writable(file);
@@ -47,6 +52,10 @@ void check_replay(const TorusOptions& t) {
 
 void check_targets(const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
+    if (!launched())  // where mpirun may have put a terminal between itself and us
+        for (const std::string& file : {command.image, command.cost, command.mask, packets})
+            refuse_bytes_on_terminal(file);
+    tone_of(command.tone, command.image);
     if (!packets.empty()) check_packets(packets);
     if (!command.torus.replay.empty()) check_replay(command.torus);
     check_distinct(command.render.scene,
@@ -63,8 +72,10 @@ void check_targets(const RenderCommand& command) {
 
 SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks) {
     SceneInput input;
-    if (ranks.first())
+    if (ranks.first()) {
         input = watch.steps().during("read scene", [&] { return read_scene(options.scene, options.strict); });
+        change_view(options.view, input.scene);
+    }
     if (!ranks.many()) return input;
     const bool ring = machine_named(options.machine).kind == MachineKind::kRing;
     if (ranks.first() && ring) options.accel = accel_text(ring_settings(options, input.scene).accel);
@@ -105,6 +116,18 @@ ImageAttributes image_attributes(const RenderReport& report, const std::string& 
                                   {"u", fmt::format("{:.6f}", report.load.imbalance)}};
     if (report.machine.offset) attributes.emplace_back("offset", std::to_string(*report.machine.offset));
     return attributes;
+}
+
+std::optional<ImageCodes> codes_of(const RenderCommand& command) {
+    if (!holds_codes(command.image)) return {};
+    const Tone tone = tone_of(command.tone, command.image);
+    return ImageCodes{tone.exposure, tone_curve_name(tone.curve), tone.gamma};
+}
+
+void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes) {
+    const Tone tone = tone_of(command.tone, command.image);
+    for (const auto& attribute : tone_attributes(tone)) attributes.push_back(attribute);
+    write_image(command.image, image, attributes, tone);
 }
 
 void write_report(const RenderCommand& command, const RenderReport& report) {

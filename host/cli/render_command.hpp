@@ -6,10 +6,13 @@
 #include "host/cli/render_options.hpp"
 #include "host/cli/render_watch.hpp"
 #include "host/cli/scene_input.hpp"
+#include "host/cli/tone_options.hpp"
 #include "host/cli/torus_options.hpp"
+#include "host/files/standard_streams.hpp"
 #include "host/image/image_io.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
+#include "host/report/view_json.hpp"
 
 namespace raya {
 
@@ -17,6 +20,7 @@ struct RenderCommand {
     RenderOptions render;
     TorusOptions torus;
     std::string image, cost, mask, report;
+    ToneOptions tone;
     TraceOptions trace;
     bool profile = false, quiet = false;
 
@@ -28,21 +32,26 @@ struct RenderCommand {
 void render_on_ring(const RenderCommand& command, Ranks& ranks);
 void render_on_torus(const RenderCommand& command, Ranks& ranks);
 
-/// The scene, which rank 0 alone reads. Elsewhere it has a name and a resolution, and no object; `options` name what
-/// rank 0 would choose from what it has read.
+/// The scene, seen as the options say, which rank 0 alone reads. Elsewhere it has a name and a resolution, and no
+/// object; `options` name what rank 0 would choose from what it has read.
 SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks);
 
 /// Refuses files that could not be written, or that are named twice. UserError.
 void check_targets(const RenderCommand& command);
 
-/// What any machine's result tells: scene, image, device, times. The rest is the caller's.
+/// How the picture's codes are made; empty of a picture without.
+std::optional<ImageCodes> codes_of(const RenderCommand& command);
+
+/// What any machine's result tells: scene, view, image, device, times. The rest is the caller's.
 template <class Result>
 RenderReport begin_report(const RenderCommand& command, const SceneInput& input, const DeviceInfo& device,
                           const Result& result) {
     RenderReport report;
-    report.scene = command.render.scene;
+    report.scene = input_name(command.render.scene);
+    report.view = view_json(input.scene);
     report.skipped = input.remarks;
-    report.image = {result.image.width, result.image.height, command.image, pixel_hash(result.image)};
+    report.image = {result.image.width, result.image.height, output_name(command.image), pixel_hash(result.image),
+                    codes_of(command)};
     report.device = {device.name,  device.platform,   device.version, result.build_options,
                      result.lanes, result.group_size, result.tuned};
     report.measured = {result.build_s, result.render_s, result.commands, {}, {}};
@@ -55,6 +64,9 @@ void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& dev
 
 /// What every picture of a render says about itself.
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);
+
+/// Writes the image with that, and with how its codes were made.
+void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes);
 
 /// The report's file, the summary and the profile, as far as they were asked for.
 void write_report(const RenderCommand& command, const RenderReport& report);

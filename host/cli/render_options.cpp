@@ -60,6 +60,7 @@ void add_antialias_options(CLI::App& command, RenderOptions& o) {
 
 void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
     add_strict_option(command, o.strict);
+    add_view_options(command, o.view);
     add_value(
         command, "--machine", o.machine,
         "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "host/cli/view_options.hpp"
 #include "host/machine/image_size.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/scene/scene.hpp"
@@ -19,6 +20,7 @@ struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
                        points, exchange, kernel_dir, accel;
     bool strict = false, no_tuned = false;
+    ViewOptions view;
     std::optional<double> threshold;
     std::optional<std::uint64_t> pe_memory;  // bytes
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;

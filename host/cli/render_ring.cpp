@@ -76,7 +76,7 @@ GreyImage grey(const CostImage& cost) {
 }
 
 void write_images(const RenderCommand& command, const RingResult& result, const ImageAttributes& attributes) {
-    write_image(command.image, result.image, attributes);
+    write_main_image(command, result.image, attributes);
     if (!command.cost.empty()) write_image(command.cost, grey(result.cost()), attributes);
     if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
 }

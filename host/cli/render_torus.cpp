@@ -95,7 +95,7 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
 void write_images(const RenderCommand& command, const TorusResult& result, const RenderReport& report,
                   const Scene& scene, ByProducts& makes, StepLog& steps) {
     const StepLog::Step step(&steps, "write images");
-    write_image(command.image, result.image, image_attributes(report, scene.name));
+    write_main_image(command, result.image, image_attributes(report, scene.name));
     if (makes.packets) write_whole_file(command.torus.packets, makes.packets->finish());
 }
 

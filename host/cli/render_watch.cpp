@@ -8,6 +8,7 @@
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/files/say.hpp"
+#include "host/files/standard_streams.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/session_trace.hpp"
 #include "host/version.hpp"
@@ -23,7 +24,7 @@ constexpr std::string_view kBuild = "build ";
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
     add_value(command, "--trace", trace.file,
               "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
-              "machine in modelled time")
+              "machine in modelled time; -: stdout")
         ->type_name("FILE.json[.gz]");
     add_value(command, "--trace-events", trace.events,
               "Events in the trace at most, 1 or more; how many were left out is said at the end")
@@ -44,7 +45,8 @@ void check_trace(const CLI::App& command, const TraceOptions& trace) {
         return;
     }
     if (trace.events == 0) throw UserError("--trace-events 0: must be 1 or more");
-    if (!trace.file.ends_with(".json") && !trace.file.ends_with(".json.gz") && !trace.file.starts_with("/dev/"))
+    const bool named = trace.file.ends_with(".json") || trace.file.ends_with(".json.gz");
+    if (!named && !trace.file.starts_with("/dev/") && !is_standard_stream(trace.file))
         throw UserError(
             fmt::format("--trace {}: let the name end in .json, or in .json.gz to be compressed", trace.file));
     check_writable(trace.file);

@@ -6,6 +6,7 @@
 
 #include "host/error.hpp"
 #include "host/files/say.hpp"
+#include "host/files/standard_streams.hpp"
 
 namespace raya {
 
@@ -24,7 +25,7 @@ void add_strict_option(CLI::App& command, bool& strict) {
 SceneInput read_scene(const std::string& file, bool strict) {
     SceneInput input;
     const auto warn = [&] {
-        for (const NffRemark& remark : input.remarks) input.warnings.add(remark_text(file, remark));
+        for (const NffRemark& remark : input.remarks) input.warnings.add(remark_text(input_name(file), remark));
     };
     try {
         input.scene = read_nff(file, strict ? nullptr : &input.remarks);

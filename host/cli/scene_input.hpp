@@ -33,7 +33,7 @@ struct SceneInput {
     Warnings warnings;
 };
 
-/// The scene of a file. Warns of what is passed over. UserError as read_nff().
+/// The scene of a file, or of stdin ("-"). Warns of what is passed over. UserError as read_nff().
 SceneInput read_scene(const std::string& file, bool strict);
 
 /// Warns where so many objects are tested with every ray that it is hardly meant.

@@ -15,6 +15,7 @@
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/standard_streams.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/table.hpp"
 #include "host/study/formats_report.hpp"
@@ -108,7 +109,7 @@ void add_formats_study(CLI::App& study) {
         ->required()
         ->type_name("DIR");
     add_value(*command, "SCENE", options->scenes,
-              "Scenes in NFF; default: the project's centre, spheres, glass, polygons, cones")
+              "Scenes in NFF, one of them - for stdin; default: the project's centre, spheres, glass, polygons, cones")
         ->type_name("SCENE.nff");
     add_value(*command, "--format", options->formats,
               "Formats beside fp32, with commas between: spa22 (e6m15) or eXmY[t]: X = 5..8, Y = 4..21, t "
@@ -128,6 +129,8 @@ void add_formats_study(CLI::App& study) {
 }  // namespace
 
 StudyFolder::StudyFolder(const fs::path& folder, const std::vector<std::string>& files) {
+    if (is_standard_stream(folder))
+        throw UserError("-o -: a study is many files, which stdout cannot hold; name a folder");
     std::error_code error;
     for (fs::path missing = folder; !missing.empty() && !fs::exists(missing, error); missing = missing.parent_path())
         made_.push_back(missing);

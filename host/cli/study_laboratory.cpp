@@ -162,10 +162,12 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
               "Folder for index.html, to be read; Markdown, CSV, JSON and plots beside it; made if missing")
         ->required()
         ->type_name("DIR");
-    add_value(*command, "SCENE", options->scenes,
-              wanted.size() > 1 ? "Scenes in NFF; studies of one scene take the first; default: each study's own"
-              : wanted.front().one_scene ? "Scene in NFF; default: centre, the paper's kind"
-                                         : "Scenes in NFF; default: the study's own")
+    add_value(
+        *command, "SCENE", options->scenes,
+        wanted.size() > 1
+            ? "Scenes in NFF, one of them - for stdin; studies of one scene take the first; default: each study's own"
+        : wanted.front().one_scene ? "Scene in NFF; -: stdin; default: centre, the paper's kind"
+                                   : "Scenes in NFF, one of them - for stdin; default: the study's own")
         ->type_name("SCENE.nff");
     add_value(*command, "--size", options->size,
               "Image size in pixels a side, 17..4096; default: the study's, mostly 256")

@@ -61,8 +61,8 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "auto|copies|kernel")
         ->default_str("auto");
     add("--packets", t.packets,
-        "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; "
-        "see docs/packets.md",
+        "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; -: "
+        "stdout; see docs/packets.md",
         "FILE.csv.gz");
     offer_words(
         add("--replay", t.replay,

@@ -143,7 +143,8 @@ void add_verify_command(CLI::App& program) {
         "--full", options->full,
         "Every format, width of lanes and group size: about five minutes with PoCL on an idle CPU, longer where "
         "compilers are slow on wide vectors");
-    add_value(*command, "--report", options->report, "Write every check, with what is wrong, as JSON")
+    add_value(*command, "--report", options->report,
+              "Write every check, with what is wrong, as JSON; -: stdout, and the lines on stderr")
         ->type_name("FILE.json");
     add_value(*command, "--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
         ->type_name("DIR");

@@ -14,6 +14,7 @@
 
 #include "host/error.hpp"
 #include "host/files/interruption.hpp"
+#include "host/files/standard_streams.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;
@@ -22,7 +23,7 @@ namespace {
 constexpr mode_t kFileMode = 0666;  // what open() gives to any new file; the user's umask takes its share
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view reason, std::string_view remedy) {
-    throw UserError(fmt::format("cannot write '{}': {}; {}", path.string(), reason, remedy));
+    throw UserError(fmt::format("cannot write '{}': {}; {}", output_name(path), reason, remedy));
 }
 
 std::string_view remedy_for(int error) {
@@ -66,7 +67,7 @@ void check_folder(const fs::path& path, const fs::path& folder) {
 /// Where the bytes go once `path` has been found writable.
 struct Target {
     fs::path file;        // symbolic links resolved
-    bool direct = false;  // a device or a pipe: written as it is
+    bool direct = false;  // a device, a pipe or stdout: written as it is
 };
 
 /// `path`, or what it names as a link, and so on.
@@ -85,6 +86,7 @@ fs::path followed(const fs::path& path) {
 
 Target checked_target(const fs::path& path) {
     if (path.empty()) refuse(path, "the name is empty", "name a file");
+    if (is_standard_stream(path)) return {path, true};
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (fs::is_directory(status) || !path.has_filename()) refuse(path, "it is a folder", "name a file in it");
@@ -141,14 +143,17 @@ std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::
 }
 
 void write_direct(const fs::path& path, const Next& next) {
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    const int descriptor = is_standard_stream(path) ? take_stdout() : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) refuse(path, errno);
     if (const int error = write_and_close(descriptor, next)) refuse(path, error);
 }
 
 }  // namespace
 
-void check_writable(const fs::path& path) { checked_target(path); }
+void check_writable(const fs::path& path) {
+    checked_target(path);
+    if (is_standard_stream(path)) keep_stdout_for_file();
+}
 
 fs::path written_file(const fs::path& path) { return checked_target(path).file; }
 

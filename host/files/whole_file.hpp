@@ -8,7 +8,8 @@ namespace raya {
 
 /// Refuses a target that write_whole_file() could not write: a folder, a missing or unwritable folder around it, an
 /// existing file that may not be written. Writes nothing. Throws UserError with file, reason and remedy. For commands
-/// that would rather fail before an hour's work than after it.
+/// that would rather fail before an hour's work than after it. Where the name is "-" stdout is kept for the file from
+/// now on (standard_streams.hpp).
 void check_writable(const std::filesystem::path& path);
 
 /// The file that write_whole_file() would write for `path`: symbolic links followed, whether what they name is there or
@@ -18,9 +19,9 @@ std::filesystem::path written_file(const std::filesystem::path& path);
 
 /// Writes `bytes` to `path`: to a temporary name in the same folder, then renamed, so that nobody ever sees half a file
 /// and an old file stays as it was until the new one is complete. A symbolic link is followed, to a file that
-/// is not there too; a device or a pipe
-/// (`/dev/stdout`) is written directly, as there is nothing to rename. Throws UserError with file, reason and remedy,
-/// and then leaves nothing behind; nor does an interruption (interruption.hpp).
+/// is not there too; a device, a pipe (`/dev/stdout`) or stdout ("-") is written directly, as there is nothing to
+/// rename. Throws UserError with file, reason and remedy, and then leaves nothing behind; nor does an interruption
+/// (interruption.hpp).
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// The same for a file whose bytes come in pieces, so that it need not lie in memory as a whole: `next` gives one after

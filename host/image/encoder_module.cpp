@@ -2,6 +2,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <sstream>
 #include <string_view>
 
 #include "host/image/encoder.hpp"
@@ -9,18 +10,51 @@
 namespace raya {
 namespace {
 
+// TIFF and JPEG have no place for names of our own.
+std::string description(const ImageAttributes& attributes) {
+    std::string text;
+    for (const auto& [key, value] : attributes) text += (text.empty() ? "raya:" : "\nraya:") + key + '=' + value;
+    return text;
+}
+
+void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::string_view format) {
+    std::string space = "sRGB";
+    if (picture.gamma != 0) {  // of which PNG has the number, TIFF and JPEG nothing
+        std::ostringstream name;
+        name << "Gamma" << picture.gamma;
+        space = name.str();
+    }
+    spec.attribute("oiio:ColorSpace", space);
+    if (format == "png") {
+        for (const auto& [key, text] : picture.attributes) spec.attribute("raya:" + key, text);
+        return;
+    }
+    if (!picture.attributes.empty()) spec.attribute("ImageDescription", description(picture.attributes));
+    if (format == "tiff") {
+        spec.attribute("compression", "zip");
+        // A second directory would have to be linked with the first, which OpenImageIO 2.4 cannot do in memory.
+        spec.attribute("tiff:write_exif", 0);
+        return;
+    }
+    spec.attribute("Compression", "jpeg:" + std::to_string(kJpegQuality));
+    spec.attribute("jpeg:subsampling", "4:4:4");
+}
+
 OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
-    const bool codes = std::string_view(picture.format) == "png";
+    const std::string_view format = picture.format;
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
-                         codes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+                         format == "exr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     if (picture.channels == 1) spec.channelnames = {"Y"};
-    spec.attribute("oiio:ColorSpace", codes ? "sRGB" : "Linear");
-    for (const auto& [key, text] : picture.attributes) spec.attribute("raya:" + key, text);
-    if (codes) return spec;
-    spec.attribute("compression", "zip");
     // Without a date OpenImageIO puts in today's; one that is no string it leaves out, with a debugging message.
-    spec.attribute("DateTime", 0);
+    if (format == "exr" || format == "tiff") spec.attribute("DateTime", 0);
     OIIO::attribute("debug", 0);
+    if (format != "exr") {
+        describe_codes(spec, picture, format);
+        return spec;
+    }
+    spec.attribute("oiio:ColorSpace", "Linear");
+    for (const auto& [key, text] : picture.attributes) spec.attribute("raya:" + key, text);
+    spec.attribute("compression", "zip");
     return spec;
 }
 

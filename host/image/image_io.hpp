@@ -1,5 +1,5 @@
-// Picture files: PNG and PPM (8-bit sRGB), OpenEXR and PFM (linear floats), the same bytes for the same picture every
-// time. PPM and PFM need no library.
+// Picture files: PNG, TIFF, JPEG and PPM (8-bit codes), OpenEXR and PFM (linear floats), the same bytes for the same
+// picture every time. PPM and PFM need no library.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -8,24 +8,31 @@
 
 #include "host/image/encoder.hpp"
 #include "host/image/image.hpp"
+#include "host/image/tone.hpp"
 
 namespace raya {
 
-inline constexpr std::array<std::string_view, 4> kImageExtensions{".png", ".exr", ".pfm", ".ppm"};
+inline constexpr std::array<std::string_view, 8> kImageExtensions{".png", ".exr",  ".pfm", ".ppm",
+                                                                  ".tif", ".tiff", ".jpg", ".jpeg"};
 inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // floats only
 
+/// Whether a colour picture is written there as 8-bit codes, and so by a tone.
+bool holds_codes(const std::filesystem::path& path);
+
 /// Refuses a target whose extension (in either case) is not among `extensions`, whose format cannot be encoded here, or
-/// that write_whole_file() could not write, so that a command can do so before it renders. Throws UserError with file,
-/// reason and remedy.
+/// that write_whole_file() could not write, so that a command can do so before it renders. Stdout ("-") takes PPM,
+/// where `extensions` have it, else PFM. Throws UserError with file, reason and remedy.
 void check_writable_target(const std::filesystem::path& path, std::span<const std::string_view> extensions);
 
 /// Writes the picture in the format that the extension names, whole or not at all, without date, host or program
-/// version. PNG and PPM hold the nearest 8-bit sRGB code of each value (clamped to 0..1), EXR (channels R, G, B, zip)
-/// and PFM the floats themselves. Throws UserError with file, reason and remedy, std::logic_error if `image` lacks
-/// pixels.
-void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes);
+/// version. PNG, TIFF (zip), JPEG (kJpegQuality, colours as fine as brightness) and PPM hold the nearest 8-bit code of
+/// each value by the tone, EXR (channels R, G, B, zip) and PFM the floats themselves. Throws UserError with file,
+/// reason and remedy, std::logic_error if `image` lacks pixels.
+void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes,
+                 const Tone& tone = {});
 
-/// The bytes of that PNG file. Throws UserError where there is no encoder, std::logic_error as above.
+/// The bytes of that PNG file, by the usual tone. Throws UserError where there is no encoder, std::logic_error as
+/// above.
 std::string png_of(const Image& image, const ImageAttributes& attributes);
 
 /// As write_image() for one number a pixel: EXR (channel Y) or PFM.

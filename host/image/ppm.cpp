@@ -4,12 +4,11 @@
 
 #include <utility>
 
-#include "host/image/srgb.hpp"
-
 namespace raya {
 
-PpmPieces::PpmPieces(int width, int height, std::span<const float> values)
-    : left_(values),
+PpmPieces::PpmPieces(int width, int height, std::span<const float> values, const Tone& tone)
+    : codes_(tone),
+      left_(values),
       row_(values.size() / static_cast<std::size_t>(height)),
       piece_(fmt::format("P6\n{} {}\n255\n", width, height)) {}
 
@@ -17,7 +16,8 @@ std::string_view PpmPieces::next() {
     if (!std::exchange(begun_, true)) return piece_;
     piece_.clear();
     if (left_.empty()) return piece_;
-    for (const float value : left_.first(row_)) piece_ += static_cast<char>(srgb_code(value));
+    for (std::size_t at = 0; at < row_; at += 3)
+        for (const std::uint8_t code : codes_(&left_[at])) piece_ += static_cast<char>(code);
     left_ = left_.subspan(row_);
     return piece_;
 }

@@ -1,9 +1,11 @@
-// Portable pixmaps (PPM, J. Poskanzer), binary: one line `P6`, one `width height`, one `255`, then three 8-bit sRGB
-// codes a pixel, the top row first. They hold the codes of a PNG and need no library.
+// Portable pixmaps (PPM, J. Poskanzer), binary: one line `P6`, one `width height`, one `255`, then three 8-bit codes a
+// pixel, the top row first. They hold the codes of a PNG and need no library.
 #pragma once
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "host/image/tone.hpp"
 
 namespace raya {
 
@@ -11,12 +13,13 @@ namespace raya {
 class PpmPieces {
   public:
     /// `values`: height x width x 3 floats, linear, row-major, row 0 on top. They outlive this.
-    PpmPieces(int width, int height, std::span<const float> values);
+    PpmPieces(int width, int height, std::span<const float> values, const Tone& tone);
 
     /// The next piece, good until the next call; empty at the end.
     std::string_view next();
 
   private:
+    ToneCodes codes_;
     std::span<const float> left_;
     std::size_t row_;  // floats
     std::string piece_;

@@ -7,6 +7,7 @@
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/read_file.hpp"
+#include "host/files/standard_streams.hpp"
 
 namespace raya {
 namespace {
@@ -16,8 +17,8 @@ namespace fs = std::filesystem;
 constexpr const char* kKind = "raya bench";
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-    throw UserError(fmt::format("{}: {}; remedy: make a baseline with: raya bench --report {}", path.string(), reason,
-                                path.string()));
+    throw UserError(fmt::format("{}: {}; remedy: make a baseline with: raya bench --report {}", input_name(path),
+                                reason, path.string()));
 }
 
 Json row_json(const BenchMeasurement& row) {

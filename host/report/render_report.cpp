@@ -20,6 +20,11 @@ Json skipped_json(const std::vector<NffRemark>& skipped) {
     return json;
 }
 
+Json codes_json(const std::optional<ImageCodes>& codes) {
+    if (!codes) return {};
+    return {{"exposure", codes->exposure}, {"tone", codes->tone}, {"gamma", codes->gamma}};
+}
+
 Json load_json(const Load& load) {
     return {{"unit", "cycles"},
             {"mean", load.mean},
@@ -152,8 +157,12 @@ Json to_json(const RenderReport& r) {
     json["scene"] = r.scene;
     json["warnings"] = r.warnings;
     json["skipped"] = skipped_json(r.skipped);
-    json["image"] = {
-        {"width", r.image.width}, {"height", r.image.height}, {"file", r.image.file}, {"hash", r.image.hash}};
+    json["view"] = r.view;
+    json["image"] = {{"width", r.image.width},
+                     {"height", r.image.height},
+                     {"file", r.image.file},
+                     {"hash", r.image.hash},
+                     {"codes", codes_json(r.image.codes)}};
     json["machine"] = machine_json(r);
     json["device"] = {{"name", r.device.name},
                       {"platform", r.device.platform},

@@ -30,6 +30,13 @@ struct Antialiasing {
     std::uint32_t band_pixels = 0;  // pixels of a PE that move at a time
 };
 
+/// How linear colours became the codes of an 8-bit picture.
+struct ImageCodes {
+    double exposure = 0;          // stops: colours were multiplied by 2^exposure
+    std::string tone;             // "clip" or "reinhard"
+    std::optional<double> gamma;  // empty: the sRGB curve
+};
+
 /// The build of one program, on the host.
 struct ProgramBuild {
     std::string name;
@@ -41,9 +48,12 @@ struct RenderReport {
     std::vector<std::string> warnings;  // what was said on stderr
     std::vector<NffRemark> skipped;     // what the scene's file has and the scene has not
 
+    Json view;  // as it was rendered, by the scene or the command line (view_json.hpp)
+
     struct {
         int width = 0, height = 0;  // pixels
-        std::string file, hash;     // hash of the pixel values: equal for equal pixels
+        std::string file, hash;     // hash of the linear pixel values: equal for equal pixels
+        std::optional<ImageCodes> codes{};
     } image;
 
     struct {

@@ -14,11 +14,7 @@ using Clock = std::chrono::steady_clock;
 
 PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
     const StepLog::Step step = session.step("pack scene");
-    PackedJob job = pack_job(scene, job_settings(settings, scale));
-    raya_job on_ring = job.header();
-    on_ring.mapping = settings.mapping;
-    job.set_header(on_ring);
-    return job;
+    return pack_for_ring(scene, settings, scale);
 }
 
 RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings) {
@@ -27,9 +23,7 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
     if (settings.accel.kind == AccelKind::kNone) return all;
     const StepLog::Step step = session.step("divide scene");
     const Clock::time_point start = Clock::now();
-    all.accel = settings.accel.kind == AccelKind::kBvh
-                    ? append_tree(all.job, settings.format)
-                    : append_grid(all.job, accel_partition(all.job, settings.format, settings.accel));
+    all.accel = append_accel(all.job, settings);
     all.accel_s = std::chrono::duration<double>(Clock::now() - start).count();
     return all;
 }
@@ -44,6 +38,20 @@ struct Figures {
 };
 
 }  // namespace
+
+PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
+    PackedJob job = pack_job(scene, job_settings(settings, scale));
+    raya_job on_ring = job.header();
+    on_ring.mapping = settings.mapping;
+    job.set_header(on_ring);
+    return job;
+}
+
+AccelSummary append_accel(PackedJob& job, const RingSettings& settings) {
+    return settings.accel.kind == AccelKind::kBvh
+               ? append_tree(job, settings.format)
+               : append_grid(job, accel_partition(job, settings.format, settings.accel));
+}
 
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks) {
     if (!ranks.first()) {

@@ -21,6 +21,12 @@ struct RingJob {
     std::uint64_t objects = 0;
 };
 
+/// The words of a scene for this machine, without accelerator.
+PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale);
+
+/// Puts the settings' accelerator behind them, which is not none.
+AccelSummary append_accel(PackedJob& job, const RingSettings& settings);
+
 /// Packed by rank 0 and sent to all; elsewhere `scene` is not looked at.
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks);
 

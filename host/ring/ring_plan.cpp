@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/kernels/tuned.hpp"
+#include "host/ring/mapping.hpp"
 #include "kernels/shared/bvh.h"
 
 namespace raya {
@@ -41,6 +42,14 @@ JobSettings job_settings(const RingSettings& settings, const LengthScale& scale)
             cycles_of_events(),
             settings.format,
             scale.exponent};
+}
+
+PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words) {
+    return {.scene = scene,
+            .job_words = job_words,
+            .bounces = settings.bounces,
+            .share = largest_share(settings.mapping),
+            .antialias = settings.antialias.method};
 }
 
 RingSettings checked(RingSettings settings, const DeviceInfo& device) {

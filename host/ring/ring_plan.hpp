@@ -2,6 +2,7 @@
 #pragma once
 #include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/ring/pe_memory.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/ring/tracer.hpp"
 #include "host/scene/length_scale.hpp"
@@ -10,6 +11,9 @@
 namespace raya {
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
+
+/// What a PE has to hold of a job of so many words; `scene` is its name.
+PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words);
 
 /// The settings with lanes and group size chosen. UserError, before anything is packed or taken, if the kernels cannot
 /// be built with them.

@@ -16,13 +16,13 @@
 #include "host/scene/outline.hpp"
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/triangulate.hpp"
+#include "host/scene/view_fault.hpp"
 
 namespace raya {
 namespace {
 
-constexpr int kLargestSide = 16384;     // pixels
-constexpr double kLargestShare = 100;   // Kd, Ks, T; more than 1 is unphysical, far more is a typing error
-constexpr double kLeastUpAngle = 1e-6;  // sine of the angle between the gaze and up, below which up is no help
+constexpr int kLargestSide = 16384;    // pixels
+constexpr double kLargestShare = 100;  // Kd, Ks, T; more than 1 is unphysical, far more is a typing error
 constexpr int kMostVertices = 1'000'000'000;
 
 class NffReader {
@@ -66,7 +66,7 @@ class NffReader {
 
     Colour read_colour(std::string_view what) {
         const Colour colour = read_vector(what);
-        if (std::min({colour.x, colour.y, colour.z}) < 0) refuse(fmt::format("{} is negative", what));
+        if (!is_colour(colour)) refuse(fmt::format("{} is negative", what));
         return colour;
     }
 
@@ -124,7 +124,7 @@ class NffReader {
                 view.height = tokens_.take_integer("the height", 1, kLargestSide);
             }
         }
-        check_view(view);
+        if (const std::string fault = view_fault(view); !fault.empty()) refuse(fault);
         has_view_ = true;
     }
 
@@ -136,15 +136,6 @@ class NffReader {
         const NffToken& token = tokens_.peek();
         const std::string found = token.text.empty() ? "the file ends" : in_quotes(token.text) + " follows";
         tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}, but still missing:{}", found, missing));
-    }
-
-    void check_view(const View& view) const {
-        const Vec3 gaze = view.at - view.from;
-        if (gaze.length() < kSmallestLength) refuse("'from' and 'at' are the same point");
-        if (!(view.angle_degrees > 0 && view.angle_degrees < 180))
-            refuse(fmt::format("the angle is {}: must lie between 0 and 180 degrees", view.angle_degrees));
-        if (unit_vector(gaze).cross(unit_vector(view.up)).length() < kLeastUpAngle)
-            refuse("'up' is zero or points along the gaze; turn it");
     }
 
     void read_background() {

@@ -36,7 +36,8 @@ namespace raya {
 /// skipped. Nothing that reads as prose is, and a file without view or objects is no scene.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr);
 
-/// Reads a file. Throws UserError as parse_nff() does, and "NAME: reason" where the file cannot be read.
+/// Reads a file, or stdin ("-"), whose name is "stdin" then. Throws UserError as parse_nff() does, and "NAME: reason"
+/// where the file cannot be read.
 Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks = nullptr);
 
 }  // namespace raya

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/scene/word_records.hpp"
+#include "host/torus/topology.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "kernels/shared/traffic.h"
 
@@ -27,6 +28,12 @@ std::uint64_t fullest_words(const NodeMemories& memories) {
     return words;
 }
 
+NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const TorusSettings& s,
+                       const NodeTrial& trial) {
+    return plan_buffers(scene.name, memories, s.torus, s.memory_bytes, s.queue,
+                        raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
+}
+
 // The job of a machine on one rank.
 TorusJob divide(const Session& session, const Scene& scene, const TorusSettings& s, const NodeShare& share,
                 const DeviceMemory& device) {
@@ -35,9 +42,7 @@ TorusJob divide(const Session& session, const Scene& scene, const TorusSettings&
     const StepLog::Step step = session.step("divide scene");
     const Partition partition = raya::partition(job, s.format, s.voxels);
     TorusJob all{outline_of(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0, 0};
-    all.buffers = plan_buffers(scene.name, all.memories, s.torus, s.memory_bytes, s.queue,
-                               raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces),
-                               trial_of(job, s.format, s.voxels));
+    all.buffers = buffers_of(scene, all.memories, s, trial_of(job, s.format, s.voxels));
     check_device_memory(scene.name, all.buffers, share.most_nodes(), session.device().name, device);
     set_windows(all.memories, s, job, partition);
     all.words = all.memories.words.size();
@@ -96,6 +101,16 @@ TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
 }
 
 }  // namespace
+
+NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
+    check_packets(s, scene);
+    const LengthScale scale = length_scale(scene, s.format);
+    const PackedJob job = pack_job(scene, job_settings(s, scale));
+    const NodeMemories memories = pack_nodes(job, partition(job, s.format, s.voxels), s.torus);
+    const std::uint64_t words = fullest_words(memories);
+    const NodeBuffers buffers = buffers_of(scene, memories, s, {});
+    return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
+}
 
 DeviceMemory least_memory(const DeviceInfo& device, Ranks& ranks) {
     DeviceMemory least{device.global_memory_bytes, device.max_allocation_bytes};

@@ -25,6 +25,15 @@ struct TorusJob {
     std::uint64_t fullest_words = 0;  // of the node that has most
 };
 
+/// What the fullest node holds, of a machine that is on no device.
+struct NodeNeeds {
+    LengthScale scale;
+    std::uint64_t words = 0, bytes = 0;  // of the scene; with the node's buffers
+};
+
+/// As a render would divide the scene. UserError where packets cannot name voxels or lights, NodesDoNotFit.
+NodeNeeds node_needs(const Scene& scene, const TorusSettings& settings);
+
 /// Memory that the device of every rank has.
 DeviceMemory least_memory(const DeviceInfo& device, Ranks& ranks);
 

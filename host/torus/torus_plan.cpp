@@ -17,7 +17,7 @@ JobSettings job_settings(const TorusSettings& s, const LengthScale& scale) {
     return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(s.packets), s.format, scale.exponent};
 }
 
-TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
+void check_packets(const TorusSettings& s, const Scene& scene) {
     for (std::uint32_t axis = 0; axis < 3; ++axis)
         if (s.voxels[axis] > RAYA_MOST_PLACES)
             throw UserError(
@@ -25,6 +25,10 @@ TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& dev
     if (scene.lights.size() > RAYA_MOST_LIGHTS)
         throw UserError(fmt::format("{}: {} lights; packets of the torus name at most {}", scene.name,
                                     scene.lights.size(), RAYA_MOST_LIGHTS));
+}
+
+TorusSettings checked(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
+    check_packets(s, scene);
     s.kernels = chosen(s.kernels, device, {.torus = true, .fp32 = s.format.is_fp32()});
     check_kernel_options({.lanes = s.kernels.lanes, .group_size = s.kernels.group_size, .bounces = s.bounces}, device);
     return s;

@@ -14,6 +14,9 @@ namespace raya {
 
 JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale);
 
+/// UserError if packets cannot name the voxels or lights.
+void check_packets(const TorusSettings& settings, const Scene& scene);
+
 /// The settings with lanes and group size chosen. UserError, before anything is packed or taken, if packets cannot name
 /// the voxels or lights, or the kernels cannot be built with them.
 TorusSettings checked(TorusSettings settings, const Scene& scene, const DeviceInfo& device);

@@ -16,7 +16,7 @@ namespace raya {
 namespace {
 
 TEST_CASE("the same render writes the same bytes", "[cli]") {
-    const std::string extension = GENERATE(".png", ".exr", ".pfm", ".ppm");
+    const std::string extension = GENERATE(".png", ".exr", ".pfm", ".ppm", ".tif", ".jpg");
     const std::string cost_extension = extension == ".exr" ? ".exr" : ".pfm";
     CAPTURE(extension, cost_extension);
     const RenderFiles first("centre", {}, extension, cost_extension), second("centre", {}, extension, cost_extension);
@@ -55,11 +55,11 @@ TEST_CASE("PNG and EXR say how they were made", "[cli]") {
 }
 
 TEST_CASE("no file says when or where it was made", "[cli]") {
-    const std::string extension = GENERATE(".png", ".exr", ".pfm");
+    const std::string extension = GENERATE(".png", ".exr", ".pfm", ".tif", ".jpg");
     CAPTURE(extension);
     std::array<char, 256> host{};
     REQUIRE(::gethostname(host.data(), host.size() - 1) == 0);
-    const RenderFiles files("centre", {}, extension, extension == ".png" ? ".exr" : extension);
+    const RenderFiles files("centre", {}, extension, extension == ".pfm" ? extension : ".exr");
     for (const std::string& path : {files.image(), files.cost()}) {
         const std::string bytes = file_contents(path);
         for (const std::string word : {"DateTime", "capDate", "tIME", "HostComputer", "Software", "owner"})

@@ -122,7 +122,7 @@ TEST_CASE("bench and generate refuse numbers outside their ranges", "[cli]") {
 TEST_CASE("a file that cannot be written is refused before anything is rendered", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes"), image = outputs / "x.png", missing = outputs / "missing/x";
-    check_refused(outputs, {"render", scene, "-o", outputs / "x.jpg"}, 2, {"x.jpg", ".png, .exr, .pfm"});
+    check_refused(outputs, {"render", scene, "-o", outputs / "x.gif"}, 2, {"x.gif", ".png, .exr, .pfm"});
     check_refused(outputs, {"render", scene, "-o", outputs / "x"}, 2, {"extension", ".png, .exr, .pfm"});
     check_refused(outputs, {"render", scene, "-o", ""}, 2, {"--output", "must not be empty"});
     check_refused(outputs, {"render", scene, "-o", outputs.path()}, 2, {outputs.path(), "cannot write"});
@@ -142,7 +142,10 @@ TEST_CASE("where OpenImageIO does not load, PNG and EXR are refused before anyth
     std::ofstream(broken) << "no library";
     const Surroundings around{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
     const std::string scene = scene_file("planes");
-    for (const auto& [image, instead] : {std::pair{"x.png", "name a .ppm file"}, {"x.exr", "name a .pfm file"}})
+    for (const auto& [image, instead] : {std::pair{"x.png", "name a .ppm file"},
+                                         {"x.tif", "name a .ppm file"},
+                                         {"x.jpg", "name a .ppm file"},
+                                         {"x.exr", "name a .pfm file"}})
         check_refused(outputs, {"render", scene, "-o", outputs / image}, 2,
                       {outputs / image, "libOpenImageIO", "remedy: install OpenImageIO ", instead}, around);
     for (const char* image : {"x.pfm", "x.ppm"}) {

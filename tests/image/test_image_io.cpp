@@ -92,6 +92,93 @@ TEST_CASE("PPM stores the codes of the PNG, the top row first", "[image_io]") {
     CHECK(ppm.rgb == png.rgb);
 }
 
+TEST_CASE("TIFF holds the codes of the PNG, in either spelling", "[image_io]") {
+    const ScratchFolder folder;
+    Image image{31, 17, {}};
+    for (int i = 0; i < 3 * 31 * 17; ++i) image.rgb.push_back(static_cast<float>(i % 101) / 97);
+    for (const char* name : {"a.png", "a.tif", "a.tiff", "A.TIF"}) write_image(folder / name, image, kAttributes);
+    const Image png = read_image(folder / "a.png");
+    for (const char* name : {"a.tif", "a.tiff", "A.TIF"}) {
+        CAPTURE(name);
+        const Image tiff = read_image(folder / name);
+        CHECK(tiff.width == 31);
+        CHECK(tiff.rgb == png.rgb);
+        CHECK(contents(folder / name) == contents(folder / "a.tif"));
+    }
+}
+
+/// The sampling factors of the three components, out of the frame header (SOF0) of a JPEG file.
+std::string sampling_factors(const std::string& jpeg) {
+    const std::size_t frame = jpeg.find("\xff\xc0");
+    REQUIRE(frame != std::string::npos);
+    return {jpeg[frame + 11], jpeg[frame + 14], jpeg[frame + 17]};
+}
+
+TEST_CASE("JPEG comes near the codes of the PNG, its colours as fine as its brightness", "[image_io]") {
+    const ScratchFolder folder;
+    Image image{64, 48, {}};
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (const int code : {4 * x, 5 * y, 2 * (x + y)})
+                image.rgb.push_back(linear_from_srgb_code(static_cast<std::uint8_t>(code)));
+    for (const char* name : {"a.png", "a.jpg", "a.jpeg"}) write_image(folder / name, image, kAttributes);
+    CHECK(contents(folder / "a.jpg") == contents(folder / "a.jpeg"));
+    CHECK(sampling_factors(contents(folder / "a.jpg")) == "\x11\x11\x11");
+    const Image png = read_image(folder / "a.png"), jpeg = read_image(folder / "a.jpg");
+    REQUIRE(jpeg.rgb.size() == png.rgb.size());
+    double worst = 0;
+    for (std::size_t i = 0; i < png.rgb.size(); ++i)
+        worst = std::max(worst, std::abs(double(srgb_code(jpeg.rgb[i])) - srgb_code(png.rgb[i])));
+    CHECK(worst > 0);  // it is lossy
+    CHECK(worst <= 4);
+}
+
+TEST_CASE("TIFF and JPEG say how they were made in their description, line by line", "[image_io]") {
+    const ScratchFolder folder;
+    for (const char* name : {"a.tif", "a.jpg"}) {
+        CAPTURE(name);
+        write_image(folder / name, awkward_image(), kAttributes);
+        const auto file = OIIO::ImageInput::open((folder / name).string());
+        REQUIRE(file);
+        CHECK(file->spec().get_string_attribute("ImageDescription") ==
+              "raya:scene=centre.nff\nraya:mapping=cyclic\nraya:offset=16\nraya:format=fp32");
+        write_image(folder / name, awkward_image(), {});
+        CHECK_THAT(contents(folder / name), !Contains("raya"));
+    }
+}
+
+TEST_CASE("8-bit files hold the codes of the tone, and PNG says its gamma", "[image_io]") {
+    const ScratchFolder folder;
+    const Tone tone{1, ToneCurve::kReinhard, 2.2};
+    const Image image = awkward_image();
+    std::string expected = "P6\n5 3\n255\n";
+    const ToneCodes codes(tone);
+    for (std::size_t at = 0; at < image.rgb.size(); at += 3)
+        for (const std::uint8_t code : codes(&image.rgb[at])) expected += static_cast<char>(code);
+    write_image(folder / "a.ppm", image, {}, tone);
+    CHECK(contents(folder / "a.ppm") == expected);
+    for (const char* name : {"a.png", "a.tif"}) {
+        CAPTURE(name);
+        write_image(folder / name, image, {}, tone);
+        const auto file = OIIO::ImageInput::open((folder / name).string());
+        REQUIRE(file);
+        std::string bytes(45, '\0');
+        REQUIRE(file->read_image(0, 0, 0, -1, OIIO::TypeDesc::UINT8, bytes.data()));
+        CHECK(bytes == expected.substr(expected.size() - 45));
+    }
+    const std::string png = contents(folder / "a.png");
+    const std::size_t gamma = png.find("gAMA");
+    REQUIRE(gamma != std::string::npos);
+    CHECK(png.substr(gamma + 4, 4) == std::string("\x00\x00\xb1\x8f", 4));  // 45455 = 100,000 / 2.2
+    CHECK_THAT(png, !Contains("sRGB"));
+    for (const char* name : {"a.exr", "a.pfm"}) {
+        write_image(folder / name, image, {}, tone);
+        CHECK(pixel_hash(read_image(folder / name)) == pixel_hash(image));
+    }
+    for (const char* name : {"a.png", "a.ppm", "a.tif", "a.tiff", "a.JPG", "a.jpeg", "-"}) CHECK(holds_codes(name));
+    for (const char* name : {"a.exr", "a.pfm"}) CHECK_FALSE(holds_codes(name));
+}
+
 TEST_CASE("row 0 is the top row of PNG and EXR", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr"}) {
@@ -166,7 +253,7 @@ TEST_CASE("attributes stand in PNG and EXR under raya:", "[image_io]") {
 
 TEST_CASE("files say nothing about when, where and by which version they were made", "[image_io]") {
     const ScratchFolder folder;
-    for (const char* name : {"a.png", "a.exr", "a.pfm", "a.ppm"}) {
+    for (const char* name : {"a.png", "a.exr", "a.pfm", "a.ppm", "a.tif", "a.jpg"}) {
         CAPTURE(name);
         write_image(folder / name, awkward_image(), kAttributes);
         const std::string first = contents(folder / name);
@@ -179,8 +266,8 @@ TEST_CASE("files say nothing about when, where and by which version they were ma
 
 TEST_CASE("an unknown extension is refused with those that are known", "[image_io]") {
     const ScratchFolder folder;
-    const auto message = Contains("use one of .png, .exr, .pfm, .ppm");
-    for (const char* name : {"a.jpg", "a", ".png", "a.png.gz"}) {
+    const auto message = Contains("use one of .png, .exr, .pfm, .ppm, .tif, .tiff, .jpg, .jpeg");
+    for (const char* name : {"a.gif", "a", ".png", "a.png.gz"}) {
         CAPTURE(name);
         CHECK_THROWS_WITH(write_image(folder / name, awkward_image(), {}), Contains(name) && message);
         CHECK_THROWS_WITH(check_writable_target(folder / name, kImageExtensions), Contains(name) && message);

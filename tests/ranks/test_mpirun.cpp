@@ -54,7 +54,7 @@ TEST_CASE("mpirun: pictures, counts and loads of the ring are those of one proce
     const Words common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
                           "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
                           "40x24"};
-    for (const Words& options : {Words{"--pes", "8", "--accel", "bvh"},
+    for (const Words& options : {Words{"--pes", "8", "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9"},
                                  Words{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
         Words render = common;
         render.insert(render.end(), options.begin(), options.end());
@@ -67,6 +67,23 @@ TEST_CASE("mpirun: picture, counts, loads and packets of the torus are those of 
     check_all_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report", folder / "x.json",
                               "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes", "3x2x2", "--size",
                               "16", "--group", "1", "--quiet"});
+}
+
+TEST_CASE("mpirun: rank 0 alone has stdin and stdout", "[ranks][.mpirun]") {
+    const ScratchFolder folder;
+    const std::string small = " --quiet --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";
+    const auto shell = [&](const std::string& line) {
+        return std::system(("cd '" + folder.path().string() + "' && " + line).c_str());
+    };
+    REQUIRE(shell(RAYA_PROGRAM " render " + scene_file("planes") + " -o one.ppm" + small) == 0);
+    for (const Mpi& mpi : mpis_here()) {
+        const std::string launch =
+            "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 " +
+            mpi.launcher + " --bind-to none -n 3 " + mpi.program;
+        CAPTURE(launch);
+        CHECK(shell(launch + " render - -o -" + small + "< " + scene_file("planes") + " > many.ppm") == 0);
+        CHECK((file_contents(folder / "many.ppm") == file_contents(folder / "one.ppm")));
+    }
 }
 
 TEST_CASE("mpirun: what ranks send arrives, of any size, and from all to all", "[ranks][.mpirun]") {

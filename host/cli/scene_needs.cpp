@@ -1,0 +1,135 @@
+#include "host/cli/scene_needs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "host/cli/parse.hpp"
+#include "host/machine/does_not_fit.hpp"
+#include "host/ring/pe_memory.hpp"
+#include "host/ring/ring_job.hpp"
+#include "host/ring/ring_plan.hpp"
+#include "host/torus/torus_job.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::array<AccelKind, 3> kKinds = {AccelKind::kNone, AccelKind::kBvh, AccelKind::kGrid};
+
+void set_missing(AccelNeed& need, const DoesNotFit& refusal) {
+    need.pe_bytes = refusal.needed_bytes;
+    need.missing_bytes = refusal.needed_bytes - refusal.memory_bytes;
+    need.refusal = refusal.what();
+}
+
+}  // namespace
+
+SceneNeeds::SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene)
+    : render_(render), torus_(torus), scene_(scene) {}
+
+const FormatFit& SceneNeeds::fit_of(const NumberFormat& format) {
+    const std::string name = format_name(format);
+    const auto known = std::ranges::find(formats_, name, &FormatFit::format);
+    if (known != formats_.end()) return *known;
+    FormatFit fit{name, {}, {}};
+    try {
+        fit.scale = length_scale(scene_, format);
+    } catch (const UserError& error) {
+        fit.refusal = error.what();
+    }
+    return formats_.emplace_back(std::move(fit));
+}
+
+const SceneNeeds::Words& SceneNeeds::words_of(const RingSettings& settings, const LengthScale& scale) {
+    const std::string format = format_name(settings.format);
+    const auto [entry, added] = words_.try_emplace(format + ' ' + accel_text(settings.accel));
+    Words& words = entry->second;
+    if (!added) return words;
+    try {
+        if (!plain_ || plain_->first != format) plain_.emplace(format, pack_for_ring(scene_, settings, scale));
+        words.words = plain_->second.words().size();
+        if (settings.accel.kind == AccelKind::kNone) return words;
+        PackedJob job = plain_->second;
+        words.made = append_accel(job, settings);
+        words.words = job.words().size();
+    } catch (const UserError& error) {  // more words than they can be numbered
+        words.refusal = error.what();
+    }
+    return words;
+}
+
+AccelNeed SceneNeeds::need_of(const RingSettings& settings, const FormatFit& fit) {
+    AccelNeed need;
+    need.accel = accel_text(settings.accel);
+    need.refusal = fit.refusal;
+    if (!need.refusal.empty()) return need;
+    const Words& words = words_of(settings, fit.scale);
+    need.words = words.words;
+    need.made = words.made;
+    need.refusal = words.refusal;
+    if (!need.refusal.empty()) return need;
+    try {
+        need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene_.name, words.words)).bytes();
+    } catch (const DoesNotFit& refusal) {
+        set_missing(need, refusal);
+    }
+    return need;
+}
+
+MachineNeeds SceneNeeds::of_ring(const RenderOptions& options) {
+    RingSettings settings = ring_settings(options, scene_);
+    check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
+    MachineNeeds all{.machine = options.machine,
+                     .format = format_name(settings.format),
+                     .pes = settings.mapping.pes,
+                     .memory_bytes = settings.machine.pe_memory_bytes,
+                     .needs = {},
+                     .refusal = {}};
+    const FormatFit fit = fit_of(settings.format);
+    const std::string usual = accel_text(settings.accel);
+    std::vector<Accel> accels;
+    for (const AccelKind kind : kKinds)
+        if (options.accel.empty()) accels.push_back({kind, {}});
+    if (accels.empty()) accels.push_back(settings.accel);
+    for (const Accel& accel : accels) {
+        settings.accel = accel;
+        all.needs.push_back(need_of(settings, fit));
+        all.needs.back().is_default = options.accel.empty() && all.needs.back().accel == usual;
+    }
+    return all;
+}
+
+MachineNeeds SceneNeeds::of_torus(const RenderOptions& options) {
+    const TorusSettings settings = torus_settings(options, torus_, scene_);
+    MachineNeeds all{.machine = options.machine,
+                     .format = format_name(settings.format),
+                     .pes = raya_nodes(settings.torus),
+                     .memory_bytes = settings.memory_bytes,
+                     .needs = {},
+                     .refusal = {}};
+    AccelNeed need;
+    need.accel = "voxels";
+    need.is_default = true;
+    need.refusal = fit_of(settings.format).refusal;
+    try {
+        if (need.refusal.empty()) {
+            const NodeNeeds needs = node_needs(scene_, settings);
+            need.words = needs.words;
+            need.pe_bytes = needs.bytes;
+        }
+    } catch (const DoesNotFit& refusal) {
+        set_missing(need, refusal);
+    } catch (const UserError& error) {
+        need.refusal = error.what();
+    }
+    all.needs.push_back(need);
+    return all;
+}
+
+MachineNeeds SceneNeeds::of(const std::string& machine) {
+    RenderOptions options = render_;
+    options.machine = machine;
+    return machine_named(machine).kind == MachineKind::kTorus ? of_torus(options) : of_ring(options);
+}
+
+}  // namespace raya

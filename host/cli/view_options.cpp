@@ -1,0 +1,124 @@
+#include "host/cli/view_options.hpp"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "host/cli/options.hpp"
+#include "host/error.hpp"
+#include "host/scene/nff_tokens.hpp"
+#include "host/scene/view_fault.hpp"
+
+namespace raya {
+namespace {
+
+constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e9 in magnitude";
+constexpr const char* kColour = "must be three numbers R,G,B from 0 to 1e9; 1 is full intensity";
+constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, without negative colours";
+
+/// The numbers between commas; none where one of them is no number, or none that can be traced.
+std::vector<double> numbers_of(std::string_view text) {
+    std::vector<double> numbers;
+    while (true) {
+        const std::string_view word = text.substr(0, text.find(','));
+        double number = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+        const bool whole = error == std::errc{} && end == word.data() + word.size();
+        if (!whole || !(std::abs(number) <= kLargestNumber)) return {};
+        numbers.push_back(number);
+        if (word.size() == text.size()) return numbers;
+        text.remove_prefix(word.size() + 1);
+    }
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const char* legal) {
+    throw UserError(fmt::format("{} {}: {}", option, text, legal));
+}
+
+Vec3 vector_of(const std::string& option, const std::string& text, const char* legal) {
+    const std::vector<double> numbers = numbers_of(text);
+    if (numbers.size() != 3) refuse(option, text, legal);
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+Light light_of(const std::string& text) {
+    const std::vector<double> n = numbers_of(text);
+    if (n.size() != 3 && n.size() != 6) refuse("--light", text, kLight);
+    Light light{{n[0], n[1], n[2]}, {}};
+    if (n.size() == 6) light.colour = Colour(n[3], n[4], n[5]);
+    if (light.colour && !is_colour(*light.colour)) refuse("--light", text, kLight);
+    return light;
+}
+
+/// "--from 0,0,0 --angle 10", of what was given of the viewpoint.
+std::string viewpoint_text(const ViewOptions& v) {
+    std::string text;
+    for (const auto& [option, value] : v.words())
+        if (option != "--background" && option != "--light")
+            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value);
+    return text;
+}
+
+void change_viewpoint(const ViewOptions& v, View& view) {
+    if (!v.from.empty()) view.from = vector_of("--from", v.from, kPoint);
+    if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);
+    if (!v.up.empty()) view.up = vector_of("--up", v.up, kPoint);
+    if (v.angle) view.angle_degrees = *v.angle;
+    const std::string given = viewpoint_text(v);
+    if (given.empty()) return;
+    const std::string fault = view_fault(view);
+    if (!fault.empty()) throw UserError(fmt::format("{}: {}", given, fault));
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> ViewOptions::words() const {
+    std::vector<std::pair<std::string, std::string>> words;
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) words.emplace_back(option, value);
+    };
+    add("--from", from);
+    add("--at", at);
+    add("--up", up);
+    add("--angle", angle ? fmt::format("{}", *angle) : "");
+    add("--background", background);
+    for (const std::string& light : lights) add("--light", light);
+    return words;
+}
+
+void add_view_options(CLI::App& command, ViewOptions& v) {
+    add_value(command, "--from", v.from, "Where the eye is, scene units; default: the scene's, as for the next five")
+        ->type_name("X,Y,Z");
+    add_value(command, "--at", v.at, "The point in the middle of the image")->type_name("X,Y,Z");
+    add_value(command, "--up", v.up, "What direction is up in the image, of any length")->type_name("X,Y,Z");
+    add_value(command, "--angle", v.angle, "Angle from the image's top to its bottom, between 0 and 180 degrees")
+        ->type_name("DEGREES");
+    add_value(command, "--background", v.background, "Colour where a ray hits nothing; linear, 1 is full intensity")
+        ->type_name("R,G,B");
+    add_value(
+        command, "--light", v.lights,
+        "A light at X,Y,Z, of colour R,G,B or white, of which n lights share sqrt(n)/2; once for each light, they "
+        "replace all of the scene's")
+        ->allow_extra_args(false)  // what follows is the scene
+        ->type_name("X,Y,Z[,R,G,B]");
+}
+
+const std::vector<std::string>& view_option_names() {
+    static const std::vector<std::string> names = {"from", "at", "up", "angle", "background", "light"};
+    return names;
+}
+
+void change_view(const ViewOptions& v, Scene& scene) {
+    change_viewpoint(v, scene.view);
+    if (!v.background.empty()) {
+        scene.background = vector_of("--background", v.background, kColour);
+        if (!is_colour(scene.background)) refuse("--background", v.background, kColour);
+    }
+    if (v.lights.empty()) return;
+    scene.lights.clear();
+    for (const std::string& text : v.lights) scene.lights.push_back(light_of(text));
+}
+
+}  // namespace raya

@@ -1,0 +1,46 @@
+#include "host/image/tone.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace raya {
+namespace {
+
+CodeBorders borders_of(const Tone& tone) {
+    if (!tone.gamma) return srgb_borders();
+    return code_borders([&](double encoded) { return std::pow(encoded, *tone.gamma); });
+}
+
+double luminance(const std::array<double, 3>& v) { return 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2]; }
+
+}  // namespace
+
+const char* tone_curve_name(ToneCurve curve) { return curve == ToneCurve::kReinhard ? "reinhard" : "clip"; }
+
+ImageAttributes tone_attributes(const Tone& tone) {
+    ImageAttributes attributes;
+    if (tone.exposure != 0) attributes.emplace_back("exposure", fmt::format("{}", tone.exposure));
+    if (tone.curve != ToneCurve::kClip) attributes.emplace_back("tone", tone_curve_name(tone.curve));
+    if (tone.gamma) attributes.emplace_back("gamma", fmt::format("{}", *tone.gamma));
+    return attributes;
+}
+
+ToneCodes::ToneCodes(const Tone& tone)
+    : curve_(tone.curve), factor_(std::exp2(tone.exposure)), borders_(borders_of(tone)) {}
+
+std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    std::array<double, 3> v{};
+    for (std::size_t i = 0; i < 3; ++i)
+        v[i] = std::isnan(rgb[i]) ? 0 : factor_ * std::clamp<double>(rgb[i], -kLargest, kLargest);
+    const double bright = luminance(v);
+    const double less = curve_ == ToneCurve::kReinhard && bright > 0 ? 1 / (1 + bright) : 1;
+    std::array<std::uint8_t, 3> codes{};
+    for (std::size_t i = 0; i < 3; ++i) codes[i] = code_between(borders_, v[i] * less);
+    return codes;
+}
+
+}  // namespace raya

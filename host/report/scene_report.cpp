@@ -1,0 +1,201 @@
+#include "host/report/scene_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "host/machine/unit_text.hpp"
+#include "host/report/table.hpp"
+#include "host/report/view_json.hpp"
+
+namespace raya {
+namespace {
+
+std::uint64_t patches_of(const Scene& scene) {
+    return std::ranges::count_if(scene.polygons, [](const Polygon& p) { return !p.normals.empty(); });
+}
+
+std::uint64_t vertices_of(const Scene& scene) {
+    std::uint64_t vertices = 0;
+    for (const Polygon& p : scene.polygons) vertices += p.vertices.size();
+    return vertices;
+}
+
+std::uint64_t checkers_of(const Scene& scene) {
+    return std::ranges::count_if(scene.surfaces, [](const Surface& s) { return s.checker.has_value(); });
+}
+
+Json objects_json(const Scene& s) {
+    return {{"all", s.object_count()},       {"spheres", s.spheres.size()}, {"planes", s.planes.size()},
+            {"polygons", s.polygons.size()}, {"patches", patches_of(s)},    {"vertices", vertices_of(s)},
+            {"cones", s.cones.size()}};
+}
+
+Json extent_json(const SceneReport& r) {
+    Json box;
+    if (!r.box.isEmpty()) box = {{"min", vector_json(r.box.min)}, {"max", vector_json(r.box.max)}};
+    return {{"box", box}, {"cube_half_side", scene_extent(r.scene)}};
+}
+
+Json format_json(const FormatFit& f) {
+    return {{"format", f.format},
+            {"fits", f.refusal.empty()},
+            {"length_exponent", f.scale.exponent},
+            {"largest", f.scale.largest},
+            {"smallest", f.scale.smallest},
+            {"least_seen", f.scale.least},
+            {"vanishing", f.scale.vanishing},
+            {"refusal", f.refusal.empty() ? Json() : Json(f.refusal)}};
+}
+
+Json need_json(const AccelNeed& n) {
+    return {{"accel", n.accel},
+            {"default", n.is_default},
+            {"fits", n.refusal.empty()},
+            {"job_words", n.words},
+            {"job_bytes", 4 * n.words},
+            {"accel_words", n.made.words},
+            {"pe_memory_used_bytes", n.pe_bytes},
+            {"missing_bytes", n.missing_bytes},
+            {"refusal", n.refusal.empty() ? Json() : Json(n.refusal)}};
+}
+
+Json machine_json(const MachineNeeds& m) {
+    Json needs = Json::list();
+    for (const AccelNeed& need : m.needs) needs.push_back(need_json(need));
+    return {{"name", m.machine},  {"pes", m.pes},
+            {"format", m.format}, {"pe_memory_bytes", m.memory_bytes},
+            {"needs", needs},     {"refusal", m.refusal.empty() ? Json() : Json(m.refusal)}};
+}
+
+template <class T>
+Json list_json(const std::vector<T>& list, Json (*one)(const T&)) {
+    Json json = Json::list();
+    for (const T& element : list) json.push_back(one(element));
+    return json;
+}
+
+Json remark_json(const NffRemark& remark) {
+    return {{"what", remark.what}, {"count", remark.count}, {"line", remark.line}};
+}
+
+std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string objects_text(const Scene& s) {
+    std::vector<std::string> kinds;
+    const auto add = [&](std::uint64_t count, const std::string& one, const std::string& many) {
+        if (count > 0) kinds.push_back(counted(count, one, many));
+    };
+    add(s.spheres.size(), "sphere", "spheres");
+    add(s.planes.size(), "plane", "planes");
+    const std::uint64_t patches = patches_of(s);
+    add(s.polygons.size() - patches, "polygon", "polygons");
+    add(patches, "patch", "patches");
+    add(s.cones.size(), "cone", "cones");
+    std::string text = fmt::format("{}: {}", counted(s.object_count(), "object", "objects"), fmt::join(kinds, ", "));
+    if (!s.polygons.empty()) text += fmt::format(" ({} vertices)", vertices_of(s));
+    text += "; " + counted(s.surfaces.size(), "surface", "surfaces");
+    if (checkers_of(s) > 0) text += fmt::format(", {} with a checker", checkers_of(s));
+    return text;
+}
+
+std::string vector_text(const Vec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
+
+std::string lights_text(const Scene& scene) {
+    constexpr std::size_t kShown = 4;
+    std::vector<std::string> lights;
+    for (const Light& light : scene.lights) {
+        if (lights.size() == kShown) break;
+        lights.push_back(
+            fmt::format("at {} of {}", vector_text(light.position), vector_text(light_colour(scene, light))));
+    }
+    std::string text = lights.empty() ? "none; everything is seen by ambient light"
+                                      : fmt::format("{}: {}", scene.lights.size(), fmt::join(lights, "; "));
+    if (scene.lights.size() > kShown) text += fmt::format("; and {} more", scene.lights.size() - kShown);
+    return text;
+}
+
+std::string extent_text(const SceneReport& r) {
+    std::string box = "planes alone have no box";
+    if (!r.box.isEmpty())
+        box = fmt::format("{:.6g}..{:.6g} x {:.6g}..{:.6g} x {:.6g}..{:.6g}", r.box.min.x, r.box.max.x, r.box.min.y,
+                          r.box.max.y, r.box.min.z, r.box.max.z);
+    return fmt::format("{}; with the eye within {:.6g} of the origin along each axis", box, scene_extent(r.scene));
+}
+
+std::string format_text(const FormatFit& f) {
+    if (!f.refusal.empty()) return f.refusal;
+    std::string text = f.format + ": ";
+    text += f.scale.exponent == 0 ? "as it is" : fmt::format("lengths x 2^{}", f.scale.exponent);
+    if (f.scale.vanishing > 0)
+        text += fmt::format(", {} spheres, cones or checkers smaller than {:.3g} are not seen", f.scale.vanishing,
+                            f.scale.least);
+    return text;
+}
+
+// A verdict in a few words: whether a PE holds it, or by how much it does not.
+std::string verdict(const AccelNeed& need) {
+    if (need.refusal.empty()) return "holds it";
+    if (need.missing_bytes > 0) return "misses " + needed_text(need.missing_bytes);
+    return "refuses it";
+}
+
+std::string machine_table(const std::vector<MachineNeeds>& machines) {
+    std::vector<std::vector<std::string>> rows = {
+        {"machine", "PEs", "format", "accel", "job words", "a PE needs", "and has", "verdict"}};
+    for (const MachineNeeds& m : machines)
+        for (const AccelNeed& n : m.needs)
+            rows.push_back({m.machine, std::to_string(m.pes), m.format, n.accel + (n.is_default ? " *" : ""),
+                            n.words > 0 ? std::to_string(n.words) : "-", n.pe_bytes > 0 ? needed_text(n.pe_bytes) : "-",
+                            m.memory_bytes ? present_text(*m.memory_bytes) : "no limit", verdict(n)});
+    return rows.size() == 1 ? "" : text_table(rows) + "*: what the machine takes by default\n";
+}
+
+// What was refused for another reason than memory, once each.
+std::string refusals_text(const std::vector<MachineNeeds>& machines) {
+    std::string text;
+    for (const MachineNeeds& m : machines) {
+        if (!m.refusal.empty()) text += fmt::format("{}: {}\n", m.machine, m.refusal);
+        for (const AccelNeed& n : m.needs)
+            if (!n.refusal.empty() && n.missing_bytes == 0)
+                text += fmt::format("{}, {}: {}\n", m.machine, n.accel, n.refusal);
+    }
+    return text;
+}
+
+}  // namespace
+
+Json to_json(const SceneReport& r) {
+    const Scene& s = r.scene;
+    Json json;
+    json["scene"] = r.file;
+    json["warnings"] = r.warnings;
+    json["skipped"] = list_json(r.skipped, remark_json);
+    json["objects"] = objects_json(s);
+    json["surfaces"] = s.surfaces.size();
+    json["checkers"] = checkers_of(s);
+    json["view"] = view_json(s);
+    json["resolution"] = {{"width", s.view.width}, {"height", s.view.height}};
+    json["extent"] = extent_json(r);
+    json["formats"] = list_json(r.formats, format_json);
+    json["machines"] = list_json(r.machines, machine_json);
+    return json;
+}
+
+std::string human_summary(const SceneReport& r) {
+    const View& v = r.scene.view;
+    std::string text = fmt::format("{}: {}\n", r.file, objects_text(r.scene));
+    text += fmt::format("camera  from {} at {} up {}, {:.6g} degrees, {} x {} pixels, background {}\n",
+                        vector_text(v.from), vector_text(v.at), vector_text(v.up), v.angle_degrees, v.width, v.height,
+                        vector_text(r.scene.background));
+    text += fmt::format("lights  {}\n", lights_text(r.scene));
+    text += fmt::format("extent  {}\n", extent_text(r));
+    for (const NffRemark& remark : r.skipped) text += fmt::format("skipped {}\n", remark_text(r.file, remark));
+    for (const FormatFit& f : r.formats) text += fmt::format("format  {}\n", format_text(f));
+    return text + "\n" + machine_table(r.machines) + refusals_text(r.machines);
+}
+
+}  // namespace raya

@@ -1,0 +1,173 @@
+// --from, --at, --up, --angle, --background, --light: a picture by them is that of a scene that says the same.
+#include <fmt/core.h>
+
+#include "host/cli/view_options.hpp"
+#include "host/error.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
+#include "host/scene/split_mix.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/cli/render_files.hpp"
+
+namespace raya {
+namespace {
+
+std::string text_of(const Vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+Vec3 random_vector(SplitMix& random, double least, double most) {
+    return {random.uniform(least, most), random.uniform(least, most), random.uniform(least, most)};
+}
+
+/// Options that say what the scene says.
+ViewOptions options_of(const Scene& scene) {
+    ViewOptions v;
+    v.from = text_of(scene.view.from);
+    v.at = text_of(scene.view.at);
+    v.up = text_of(scene.view.up);
+    v.angle = scene.view.angle_degrees;
+    v.background = text_of(scene.background);
+    for (const Light& light : scene.lights)
+        v.lights.push_back(text_of(light.position) + (light.colour ? "," + text_of(*light.colour) : ""));
+    return v;
+}
+
+Scene random_look(const Scene& scene, SplitMix& random) {
+    Scene other = scene;
+    other.view.from = random_vector(random, 4, 9);
+    other.view.at = random_vector(random, -1, 1);
+    other.view.up = random_vector(random, -1, 1) + Vec3(0, 0, 3);
+    other.view.angle_degrees = random.uniform(10, 80);
+    other.background = random_vector(random, 0, 1);
+    other.lights.clear();
+    for (std::uint64_t n = 1 + random.next() % 3; n > 0; --n) {
+        Light light{random_vector(random, -20, 20), {}};
+        if (random.next() % 2 == 0) light.colour = random_vector(random, 0, 2);
+        other.lights.push_back(light);
+    }
+    return other;
+}
+
+TEST_CASE("what is given takes the place of what the scene says, to the last bit, and nothing else does", "[cli]") {
+    const Scene scene = read_nff(scene_file("centre"));
+    SplitMix random(5);
+    for (int i = 0; i < 200; ++i) {
+        const Scene other = random_look(scene, random);
+        CAPTURE(i);
+        Scene changed = scene;
+        change_view(options_of(other), changed);
+        REQUIRE(changed == other);
+        change_view({}, changed);
+        REQUIRE(changed == other);
+        ViewOptions one;
+        one.at = text_of(other.view.at);
+        Scene partly = scene, expected = scene;
+        expected.view.at = other.view.at;
+        change_view(one, partly);
+        REQUIRE(partly == expected);
+    }
+}
+
+TEST_CASE("what no reader of scenes would take is refused with the option's name", "[cli]") {
+    const auto refusal = [](const ViewOptions& v) -> std::string {
+        Scene scene = read_nff(scene_file("centre"));
+        const Scene before = scene;
+        try {
+            change_view(v, scene);
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        FAIL("taken");
+        return {};
+    };
+    using Catch::Matchers::Contains;
+    for (const char* text : {"1,2", "1,2,3,4", "1,2,", ",1,2", "1 2 3", "1,2,x", "1,2,3x", "nan,0,0", "1,inf,0",
+                             "1e10,0,0", "1,2,1e999", "x"}) {
+        CAPTURE(text);
+        CHECK_THAT(refusal({.from = text}),
+                   Catch::StartsWith(std::string("--from ") + text + ": must be three numbers"));
+        CHECK_THAT(refusal({.at = text}), Catch::StartsWith("--at "));
+        CHECK_THAT(refusal({.up = text}), Catch::StartsWith("--up "));
+        CHECK_THAT(refusal({.background = text}), Catch::StartsWith("--background "));
+        CHECK_THAT(refusal({.lights = {"0,0,1", text}}), Catch::StartsWith(std::string("--light ") + text));
+    }
+    CHECK_THAT(refusal({.lights = {"1,2,3,4,5"}}), Contains("X,Y,Z,R,G,B"));
+    CHECK_THAT(refusal({.lights = {"1,2,3,-1,0,0"}}), Contains("without negative colours"));
+    CHECK_THAT(refusal({.background = "0,-0.5,0"}), Contains("from 0 to 1e9"));
+    CHECK(refusal({.from = "1,1,1", .at = "1,1,1"}) == "--from 1,1,1 --at 1,1,1: 'from' and 'at' are the same point");
+    for (const double angle : {0.0, 180.0, -1.0}) CHECK_THAT(refusal({.angle = angle}), Contains("between 0 and 180"));
+    CHECK_THAT(refusal({.up = "0,0,0"}), Catch::StartsWith("--up 0,0,0: 'up' is zero"));
+    CHECK_THAT(refusal({.from = "0,0,5", .at = "0,0,0", .up = "0,0,-2"}), Contains("along the gaze"));
+}
+
+/// The options as words of a command line.
+Words words_of(const ViewOptions& v) {
+    Words words = {"--from",       v.from,      "--at", v.at, "--up", v.up, "--angle", fmt::format("{}", *v.angle),
+                   "--background", v.background};
+    for (const std::string& light : v.lights) words.insert(words.end(), {"--light", light});
+    return words;
+}
+
+TEST_CASE("a picture by options is that of a scene which says the same, and its report makes it again", "[cli]") {
+    const ScratchFolder folder;
+    const Scene scene = read_nff(scene_file("centre"));
+    SplitMix random(6);
+    const Scene other = random_look(scene, random);
+    write_whole_file(folder / "other.nff", write_nff(other));
+    const auto report_of = [&](const std::string& file, Words words) {
+        words.insert(words.begin(), {"render", file, "-o", folder / "x.pfm", "--size", "16", "--lanes", "4", "--format",
+                                     "fp32", "--report", folder / "x.json"});
+        const Outcome run = run_raya(words);
+        INFO(run.told());
+        REQUIRE(run.code == 0);
+        return Document::parse(file_contents(folder / "x.json"));
+    };
+    for (const char* machine : {"grande", "torus"}) {
+        CAPTURE(machine);
+        const Document by_file = report_of(folder / "other.nff", {"--machine", machine});
+        Words words = words_of(options_of(other));
+        words.insert(words.end(), {"--machine", machine});
+        const Document by_options = report_of(scene_file("centre"), words);
+        CHECK(by_options["image"]["hash"] == by_file["image"]["hash"]);
+        CHECK(by_options["view"] == by_file["view"]);
+        CHECK(report_of(scene_file("centre"), {"--machine", machine})["image"]["hash"] != by_file["image"]["hash"]);
+
+        const Document& view = by_options["view"];
+        const auto vector = [](const Document& v) {
+            return fmt::format("{},{},{}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+        };
+        ViewOptions again{.from = vector(view["from"]),
+                          .at = vector(view["at"]),
+                          .up = vector(view["up"]),
+                          .background = vector(view["background"]),
+                          .angle = view["angle_degrees"].get<double>(),
+                          .lights = {}};
+        for (const Document& light : view["lights"])
+            again.lights.push_back(vector(light["position"]) + "," + vector(light["colour"]));
+        words = words_of(again);
+        words.insert(words.end(), {"--machine", machine});
+        CHECK(report_of(scene_file("centre"), words)["image"]["hash"] == by_file["image"]["hash"]);
+    }
+}
+
+TEST_CASE("bench measures what the options show, and --light leaves the scene to what follows", "[cli]") {
+    const ScratchFolder folder;
+    const auto hash_of = [&](Words words) -> std::string {
+        words.insert(words.begin(), "bench");
+        words.insert(words.end(), {"--size", "16", "--samples", "1", "--lanes", "4", "--format", "fp32", "--report",
+                                   folder / "b.json"});
+        const Outcome run = run_raya(words);
+        INFO(run.told());
+        REQUIRE(run.code == 0);
+        return Document::parse(file_contents(folder / "b.json"))["rows"][0]["hash"];
+    };
+    const std::string usual = hash_of({scene_file("planes")});
+    const std::string lit = hash_of({"--light", "1,2,3", "--light=-4,5,6,1,1,0", scene_file("planes")});
+    CHECK(lit != usual);
+    CHECK(hash_of({scene_file("planes"), "--angle", "20"}) != usual);
+    const ScratchFolder none;
+    check_refused(none, {"bench", scene_file("planes"), "--tune", "--from", "1,2,3"}, 2, {"--from with --tune"});
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,62 @@
+// The box about finite objects: it holds every point of them, and no smaller one does.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "host/scene/scene_box.hpp"
+#include "host/scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+Vec3 random_vector(SplitMix& random, double most) {
+    return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
+}
+
+Scene of_cone(const Cone& cone) {
+    Scene scene;
+    scene.cones.push_back(cone);
+    return scene;
+}
+
+TEST_CASE("the box of a cone touches its two circles", "[scene_box]") {
+    SplitMix random(77);
+    for (int i = 0; i < 200; ++i) {
+        const double sign = i % 2 == 0 ? 1 : -1;
+        const Cone cone{random_vector(random, 5), sign * random.uniform(0, 2), random_vector(random, 5),
+                        sign * random.uniform(0, 2), 0};
+        const Imath::Box3d box = scene_box(of_cone(cone));
+        const Vec3 axis = (cone.apex - cone.base).normalized();
+        const Vec3 any = std::abs(axis.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+        const Vec3 u = axis.cross(any).normalized(), v = axis.cross(u);
+        Imath::Box3d touched;
+        constexpr int kPoints = 720;
+        for (int k = 0; k < kPoints; ++k) {
+            const double angle = 2 * std::numbers::pi * k / kPoints;
+            const Vec3 way = u * std::cos(angle) + v * std::sin(angle);
+            touched.extendBy(cone.base + way * cone.base_radius);
+            touched.extendBy(cone.apex + way * cone.apex_radius);
+        }
+        CAPTURE(i);
+        for (int axis_number = 0; axis_number < 3; ++axis_number) {
+            CHECK(box.min[axis_number] == Approx(touched.min[axis_number]).margin(1e-4));
+            CHECK(box.max[axis_number] == Approx(touched.max[axis_number]).margin(1e-4));
+            CHECK(box.min[axis_number] <= touched.min[axis_number] + 1e-12);
+            CHECK(box.max[axis_number] >= touched.max[axis_number] - 1e-12);
+        }
+    }
+}
+
+TEST_CASE("the box holds spheres, seen from outside or inside, and corners of polygons; planes have none",
+          "[scene_box]") {
+    Scene scene;
+    scene.planes.push_back({{0, 0, 1}, 7, 0});
+    CHECK(scene_box(scene).isEmpty());
+    scene.spheres.push_back({{1, 2, 3}, -2, 0});
+    CHECK(scene_box(scene) == Imath::Box3d({-1, 0, 1}, {3, 4, 5}));
+    scene.polygons.push_back({{{0, 0, 0}, {9, 0, 0}, {0, -4, 0}}, {}, 0});
+    CHECK(scene_box(scene) == Imath::Box3d({-1, -4, 0}, {9, 4, 5}));
+}
+
+}  // namespace
+}  // namespace raya
