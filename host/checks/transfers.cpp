@@ -130,7 +130,7 @@ Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     return passed(fmt::format("12 rotations of {} blocks of {} words", pes, kRows * words));
 }
 
-Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every) {
+Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, Kernels* kernels) {
     constexpr std::uint32_t kCapacity = 5, kWords = RAYA_PACKET_WORDS;
     const std::uint32_t nodes = raya_nodes(torus), box = (1 + kCapacity) * kWords;
     const NodeShare share(torus);
@@ -138,6 +138,7 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t eve
     links.clear();
     NodeStatus status(nodes);
     Words out(links.outboxes().size()), in(out.size()), expected(out.size());
+    Words sent(links.sent().size()), expected_sent(sent.size());
     std::uint32_t packets_sent = 0;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
         for (std::uint32_t node = 0; node < nodes && torus.sides[link / 2] > 1; ++node) {
@@ -146,14 +147,21 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t eve
             status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
             const std::size_t at = std::size_t{number} * box;
             out[at] = expected[at] = packets;
+            expected_sent[number] = packets > 0;
             for (std::uint32_t w = 0; w < packets * kWords; ++w)
                 out[at + kWords + w] = expected[at + kWords + w] = number << 12 | (w + 1);
             packets_sent += packets;
         }
+    for (std::size_t at = 0; at < in.size(); ++at) in[at] = at % box ? kPoison : 0;  // empty, whatever clear() has done
+    session.write("inboxes", links.inboxes(), in);
     session.write("outboxes", links.outboxes(), out);
+    auto nodes_say = session.buffer<std::uint32_t>("status", status.words.size());
+    session.write("status", nodes_say, status.words);
+    if (kernels) links.use_kernel(kernels->get<ExchangeKernel>(), kernels->options().group_size, nodes_say);
     std::vector<std::uint64_t> words(std::size_t{nodes} * RAYA_LINKS);
     links.exchange(status, words);
     session.read("inboxes", links.inboxes(), in);
+    session.read("sent boxes", links.sent(), sent);
     // What lies behind a box's packets has no meaning.
     for (std::size_t at = 0; at < in.size(); at += box)
         for (std::size_t w = 1; w < box; ++w)
@@ -161,6 +169,7 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t eve
     const std::string what =
         fmt::format("exchange on {}", sides_text({torus.sides[0], torus.sides[1], torus.sides[2]}));
     if (auto verdict = difference(expected, in, what, box, "inbox")) return *verdict;
+    if (auto verdict = difference(expected_sent, sent, what + ", boxes that were sent", nodes, "link")) return *verdict;
     return passed(fmt::format("{} packets over {} links", packets_sent, RAYA_LINKS * nodes));
 }
 

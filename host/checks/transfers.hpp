@@ -6,6 +6,7 @@
 
 #include "host/checks/verdict.hpp"
 #include "host/cl/commands.hpp"
+#include "host/kernels/kernels.hpp"
 #include "kernels/shared/torus.h"
 
 namespace raya {
@@ -19,8 +20,9 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words);
 /// 12 rotations, in both directions, of P blocks of so many words.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
 
-/// Some nodes' outboxes filled, one exchange, all inboxes compared. `every`: a box in so many has packets.
-Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every);
+/// Some nodes' outboxes filled, one exchange, all inboxes compared, and which boxes are said to have been sent.
+/// `every`: a box in so many has packets. By the kernel that `kernels` builds; without them by copies.
+Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t every, Kernels* kernels = nullptr);
 
 /// `count` words of each of `blocks` blocks, from one pitch to another.
 struct BlockCopy {

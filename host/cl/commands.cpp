@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -16,6 +17,8 @@ namespace {
 // Events hold driver memory until their times are read, so a long run stops for a moment every so many commands.
 constexpr std::size_t kMaxPending = 4096;
 
+HostMemory::Kind memory_kind(bool pinned) { return pinned ? HostMemory::Kind::kPinned : HostMemory::Kind::kPlain; }
+
 std::string copied(const std::string& from, const std::string& to) { return from + " -> " + to; }
 
 }  // namespace
@@ -26,8 +29,9 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
         context_ = cl::Context(device_);
         queue_ =
             std::make_unique<cl::CommandQueue>(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
-        if (transfers == Transfers::kStaged || (transfers == Transfers::kOfDevice && info_.own_memory))
-            staging_ = std::make_unique<Staging>(context_, *queue_);
+        pinned_ = transfers == Transfers::kStaged || (transfers == Transfers::kOfDevice && info_.own_memory);
+        staging_ =
+            std::make_unique<Staging>(context_, *queue_, memory_kind(pinned_), pinned_ ? kPinnedHalf : kPlainHalf);
     });
 }
 
@@ -98,7 +102,8 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
 void Session::write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
                           std::size_t bytes, const void* from) {
     if (bytes == 0) return;
-    if (staging_) return write_staged(label, to, name, offset, bytes, static_cast<const std::byte*>(from));
+    if (pinned_ || bytes <= staging_->half_bytes())
+        return write_staged(label, to, name, offset, bytes, static_cast<const std::byte*>(from));
     submit(fmt::format("'{}': writing {} bytes into buffer '{}'", label, bytes, name),
            {.label = label, .kind = "write", .bytes = bytes, .object = name},
            [&](cl::Event* event) { queue_->enqueueWriteBuffer(to, CL_TRUE, offset, bytes, from, nullptr, event); });
@@ -107,7 +112,7 @@ void Session::write_bytes(const std::string& label, const cl::Buffer& to, const 
 void Session::read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                          std::size_t bytes, void* to) {
     if (bytes == 0) return;
-    if (staging_) return read_staged(label, from, name, offset, bytes, static_cast<std::byte*>(to));
+    if (pinned_) return read_staged(label, from, name, offset, bytes, static_cast<std::byte*>(to));
     submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
            {.label = label, .kind = "read", .bytes = bytes, .object = name},
            [&](cl::Event* event) { queue_->enqueueReadBuffer(from, CL_TRUE, offset, bytes, to, nullptr, event); });
@@ -115,40 +120,59 @@ void Session::read_bytes(const std::string& label, const cl::Buffer& from, const
 
 void Session::write_staged(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
                            std::size_t bytes, const std::byte* from) {
-    for (std::size_t done = 0; done < bytes; done += Staging::kHalfBytes) {
-        const std::size_t part = std::min(bytes - done, Staging::kHalfBytes);
+    for (std::size_t done = 0; done < bytes; done += staging_->half_bytes()) {
+        const std::size_t part = std::min(bytes - done, staging_->half_bytes());
         const std::string what = fmt::format("'{}': writing {} bytes into buffer '{}'", label, part, name);
-        Staging::Half& half = *guarded(what, [&] { return &staging_->next(); });
-        std::memcpy(half.memory, from + done, part);
+        const Staging::Place place = guarded(what, [&] { return staging_->take(part); });
+        std::memcpy(place.bytes, from + done, part);
         submit(what, {.label = label, .kind = "write", .bytes = part, .object = name}, [&](cl::Event* event) {
-            queue_->enqueueWriteBuffer(to, CL_FALSE, offset + done, part, half.memory, nullptr, event);
-            half.last = *event;
+            queue_->enqueueWriteBuffer(to, CL_FALSE, offset + done, part, place.bytes, nullptr, event);
+            place.half.used_by(*event);
         });
     }
 }
 
 void Session::read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                           std::size_t bytes, std::byte* to) {
-    Staging::Half* before = nullptr;  // that the part from `taken` on is being read into
+    std::optional<Staging::Place> before;  // that the part from `taken` on is being read into
     std::size_t taken = 0;
     const std::string what = fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name);
     const auto take = [&](std::size_t part) {
-        guarded(what, [&] { before->wait(); });
-        std::memcpy(to + taken, before->memory, part);
+        guarded(what, [&] { before->half.wait(); });
+        std::memcpy(to + taken, before->bytes, part);
         taken += part;
     };
-    for (std::size_t done = 0; done < bytes; done += Staging::kHalfBytes) {
-        const std::size_t part = std::min(bytes - done, Staging::kHalfBytes);
-        Staging::Half& half = *guarded(what, [&] { return &staging_->next(); });
+    for (std::size_t done = 0; done < bytes; done += staging_->half_bytes()) {
+        const std::size_t part = std::min(bytes - done, staging_->half_bytes());
+        const Staging::Place place = guarded(what, [&] { return staging_->take(part); });
         submit(what, {.label = label, .kind = "read", .bytes = part, .object = name}, [&](cl::Event* event) {
-            queue_->enqueueReadBuffer(from, CL_FALSE, offset + done, part, half.memory, nullptr, event);
-            half.last = *event;
+            queue_->enqueueReadBuffer(from, CL_FALSE, offset + done, part, place.bytes, nullptr, event);
+            place.half.used_by(*event);
         });
         guarded(what, [&] { queue_->flush(); });
-        if (before != nullptr) take(Staging::kHalfBytes);
-        before = &half;
+        if (before) take(staging_->half_bytes());
+        before.emplace(place);
     }
     take(bytes - taken);
+}
+
+std::unique_ptr<HostMemory> Session::host_memory(const std::string& name, std::size_t bytes) const {
+    return guarded(fmt::format("taking {} bytes of the host's memory for '{}'", bytes, name),
+                   [&] { return std::make_unique<HostMemory>(context_, *queue_, memory_kind(pinned_), bytes); });
+}
+
+void Session::read_later(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+                         std::size_t bytes, HostMemory& to, std::size_t to_offset) {
+    if (bytes == 0) return;
+    submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
+           {.label = label, .kind = "read", .bytes = bytes, .object = name}, [&](cl::Event* event) {
+               queue_->enqueueReadBuffer(from, CL_FALSE, offset, bytes, to.bytes() + to_offset, nullptr, event);
+               to.used_by(*event);
+           });
+}
+
+void Session::wait_for(const std::string& label, HostMemory& memory) {
+    guarded(fmt::format("'{}': waiting for what is read", label), [&] { memory.wait(); });
 }
 
 void Session::copy_bytes(const std::string& label, const Place& from, const Place& to, std::size_t bytes) {

@@ -9,6 +9,7 @@
 
 #include "host/cl/buffer.hpp"
 #include "host/cl/device.hpp"
+#include "host/cl/host_memory.hpp"
 #include "host/cl/kernel.hpp"
 #include "host/cl/opencl.hpp"
 #include "host/cl/profile.hpp"
@@ -21,7 +22,8 @@ namespace raya {
 /// Whether the device is asked to measure its commands (a device that cannot is not asked).
 enum class Timing { kOn, kOff };
 
-/// Whether transfers go through pinned memory (host/cl/staging.hpp); of the device: where its memory is its own.
+/// Whether all transfers go through pinned memory (host/cl/staging.hpp), or small writes alone, through plain memory;
+/// of the device: the former where its memory is its own.
 enum class Transfers { kOfDevice, kDirect, kStaged };
 
 /// A context and an in-order queue: commands run one after another, in the order in which they were given.
@@ -66,7 +68,7 @@ class Session {
     }
 
     /// Host to device: `from` into `to` from element `offset` on. `from` may change afterwards: either this waits, or
-    /// its bytes are on their way from pinned memory.
+    /// its bytes are on their way from memory of the session's.
     template <class T>
     void write(const std::string& label, Buffer<T>& to, std::span<const std::type_identity_t<T>> from,
                std::size_t offset = 0) {
@@ -80,6 +82,29 @@ class Session {
               std::size_t offset = 0) {
         check_range(label, from.name(), from.size(), offset, to.size());
         read_bytes(label, from.memory(), from.name(), offset * sizeof(T), to.size_bytes(), to.data());
+    }
+
+    /// Memory for `count` > 0 elements that are read while the host goes on. DeviceError where there is none.
+    template <class T>
+    Landing<T> landing(const std::string& name, std::size_t count) const {
+        return {host_memory(name, count * sizeof(T)), count};
+    }
+
+    /// Device to host: `count` elements of `from` from element `offset` on, into `to` from element `to_offset` on. Does
+    /// not wait; they are there after wait(), and later reads into `to` come after this one.
+    template <class T>
+    void read(const std::string& label, const Buffer<T>& from, std::size_t offset, Landing<T>& to,
+              std::size_t to_offset, std::size_t count) {
+        check_range(label, from.name(), from.size(), offset, count);
+        check_range(label, "landing of " + from.name(), to.size(), to_offset, count);
+        read_later(label, from.memory(), from.name(), offset * sizeof(T), count * sizeof(T), to.memory(),
+                   to_offset * sizeof(T));
+    }
+
+    /// Waits for what is to land there. DeviceError with the label where that has failed.
+    template <class T>
+    void wait(const std::string& label, Landing<T>& landing) {
+        wait_for(label, landing.memory());
     }
 
     /// Device to device: `count` elements; within one buffer the two ranges must not overlap. Does not wait.
@@ -155,11 +180,15 @@ class Session {
     static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
                              std::size_t count, std::size_t blocks);
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
+    std::unique_ptr<HostMemory> host_memory(const std::string& name, std::size_t bytes) const;
     void launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes);
     void write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
                      std::size_t bytes, const void* from);
     void read_bytes(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
                     std::size_t bytes, void* to);
+    void read_later(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
+                    std::size_t bytes, HostMemory& to, std::size_t to_offset);
+    static void wait_for(const std::string& label, HostMemory& memory);
     void write_staged(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,
                       std::size_t bytes, const std::byte* from);
     void read_staged(const std::string& label, const cl::Buffer& from, const std::string& name, std::size_t offset,
@@ -181,7 +210,8 @@ class Session {
     mutable std::uint64_t bytes_taken_ = 0;
     cl::Context context_;
     std::unique_ptr<cl::CommandQueue> queue_;  // at an address that stays, when a session moves
-    std::unique_ptr<Staging> staging_;         // where transfers are staged
+    bool pinned_ = false;                      // all transfers go through pinned memory; else small writes, plain
+    std::unique_ptr<Staging> staging_;
     std::vector<Pending> pending_;
     Profile profile_;
     StepLog* steps_ = nullptr;

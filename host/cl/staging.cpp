@@ -1,31 +1,28 @@
 #include "host/cl/staging.hpp"
 
-#include <utility>
+#include <algorithm>
 
 namespace raya {
+namespace {
 
-Staging::Staging(const cl::Context& context, const cl::CommandQueue& queue) : queue_(queue) {
-    for (Half& half : halves_) {
-        half.buffer = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, kHalfBytes);
-        half.memory = static_cast<std::byte*>(
-            queue_.enqueueMapBuffer(half.buffer, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, kHalfBytes));
+constexpr std::size_t kAlignment = 64;  // bytes; a cache line, and what drivers copy fastest from
+
+}  // namespace
+
+Staging::Staging(const cl::Context& context, const cl::CommandQueue& queue, HostMemory::Kind kind,
+                 std::size_t half_bytes)
+    : halves_{{{context, queue, kind, half_bytes}, {context, queue, kind, half_bytes}}} {}
+
+Staging::Place Staging::take(std::size_t bytes) {
+    if (bytes > half_bytes() - used_) {
+        turn_ = (turn_ + 1) % halves_.size();
+        halves_[turn_].wait();
+        used_ = 0;
     }
-}
-
-Staging::~Staging() {
-    for (const Half& half : halves_)  // by the calls that do not throw
-        if (half.memory != nullptr) clEnqueueUnmapMemObject(queue_(), half.buffer(), half.memory, 0, nullptr, nullptr);
-    clFinish(queue_());
-}
-
-void Staging::Half::wait() {
-    if (last() != nullptr) std::exchange(last, {}).wait();
-}
-
-Staging::Half& Staging::next() {
-    Half& half = halves_[turn_++ % halves_.size()];
-    half.wait();
-    return half;
+    HostMemory& half = halves_[turn_];
+    const Place place{half, half.bytes() + used_};
+    used_ = std::min(half_bytes(), (used_ + bytes + kAlignment - 1) / kAlignment * kAlignment);
+    return place;
 }
 
 }  // namespace raya

@@ -13,7 +13,7 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/study/measured.hpp"
-#include "host/torus/topology.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "host/version.hpp"
 
@@ -60,12 +60,7 @@ const EventCounts& events_of_ring(const RingResult& r) { return r.all.events; }
 const EventCounts& events_of_torus(const TorusResult& r) { return r.events; }
 
 TorusSettings torus_of(const RingSettings& s) {
-    TorusSettings t;
-    t.machine = machine_named("torus");
-    t.width = s.mapping.width;
-    t.height = s.mapping.height;
-    t.torus = make_torus({4, 4, 4}, Links::kTorus3d);
-    t.voxels = {4, 4, 4};
+    TorusSettings t = usual_torus({s.mapping.width, s.mapping.height});
     t.bounces = s.bounces;
     t.format = s.format;
     t.sampling = s.sampling;

@@ -73,6 +73,7 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     t.links = links_name(settings.links);
     t.inject = settings.inject == Injection::kRoot ? "root" : "all";
     t.link_exchange = result.links_by_kernel ? "kernel" : "copies";
+    t.link_origin = result.links_origin;
     t.packets = settings.packets;
     t.returns = result.returns;
     t.discarded = result.events[RAYA_DISCARDED];

@@ -11,7 +11,6 @@ namespace {
 
 using Sides = std::array<std::uint32_t, 3>;
 
-constexpr Sides kNodes = {4, 4, 4};  // Yoshitani & Yamazaki
 constexpr const char* kPacketsEnd = ".csv.gz";
 
 }  // namespace
@@ -57,7 +56,8 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "N");
     add("--link-exchange", t.link_exchange,
         "How packets come over the links of a device, the same ones either way: as copies between its buffers or by a "
-        "kernel; auto: copies on a CPU, elsewhere what is sooner, measured when the render begins",
+        "kernel; auto: as raya bench --tune found for this device, else copies on a CPU, elsewhere what is sooner, "
+        "measured when the render begins",
         "auto|copies|kernel")
         ->default_str("auto");
     add("--packets", t.packets,
@@ -147,7 +147,7 @@ bool is_return_a_ray(const std::string& text) {
 }
 
 LinkMove parse_link_move(const std::string& text) {
-    if (text.empty() || text == "auto") return LinkMove::kMeasured;
+    if (text.empty() || text == "auto") return LinkMove::kOfDevice;
     if (text == "copies") return LinkMove::kCopies;
     if (text == "kernel") return LinkMove::kKernel;
     throw UserError(fmt::format("--link-exchange {}: must be auto, copies or kernel", text));
@@ -185,13 +185,13 @@ TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, cons
     const ImageSize size = image_size(o, scene);
     settings.width = size.width;
     settings.height = size.height;
-    const Sides nodes = t.nodes.empty() ? kNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 together");
+    const Sides nodes =
+        t.nodes.empty() ? kUsualNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 together");
     settings.links = t.links.empty() ? Links::kTorus3d : parse_links(t.links);
     settings.torus = make_torus(nodes, settings.links);
     settings.voxels = voxels_of(t, nodes);
     settings.inject = parse_injection(t.inject);
     settings.packets = parse_charge(t);
-    settings.link_move = parse_link_move(t.link_exchange);
     if (t.queue == 0u) throw UserError("--queue 0: must be 1 packet or more");
     settings.queue = t.queue.value_or(0);
     settings.memory_bytes = pe_memory_of(o, settings.machine);
@@ -199,6 +199,7 @@ TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, cons
     settings.format = format_of(o, settings.machine);
     settings.sampling = parse_sampling(o.sampling);
     settings.kernels = kernel_choice(o);
+    settings.kernels.link_move = parse_link_move(t.link_exchange);
     settings.history = t.async || !t.replay.empty();
     return settings;
 }

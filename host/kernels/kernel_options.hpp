@@ -38,7 +38,11 @@ struct KernelOptions {
     KernelTuning more{};
 };
 
-/// How the kernels are built for a device, as far as the user or a check chooses.
+/// How packets come over the links of a torus's device: as copies between buffers, as a kernel of their own, or as
+/// suits the device: copies on a CPU, elsewhere what takes less time, measured. The same packets arrive.
+enum class LinkMove : std::uint32_t { kOfDevice, kCopies, kKernel };
+
+/// How the kernels are built for a device and what else is run there, as far as the user or a check chooses.
 struct KernelChoice {
     std::uint32_t lanes = 0;       // V: 1, 4, 8 or 16; 0: chosen from the device
     std::uint32_t group_size = 0;  // L: 1..1024 work-items; 0: chosen from the device
@@ -48,7 +52,9 @@ struct KernelChoice {
     bool exact_arithmetic = true;  // the device's own division, square root and a b + c, where it rounds them correctly
     KernelSources sources{};
     KernelTuning more{};
-    std::string origin{};  // where lanes and what follows from them come from, see chosen() in tuned.hpp
+    LinkMove link_move = LinkMove::kOfDevice;
+    std::string origin{};       // where lanes and what follows from them come from, see chosen() in tuned.hpp
+    std::string link_origin{};  // likewise of link_move
 };
 
 /// V: as wide as the device's float vectors on a CPU, 1 elsewhere and on llvmpipe, which makes vectors of work-items

@@ -1,5 +1,9 @@
 #include "host/kernels/tuned.hpp"
 
+#include <fmt/core.h>
+
+#include "host/error.hpp"
+
 namespace raya {
 namespace {
 
@@ -15,10 +19,14 @@ TunedValues default_values(const DeviceInfo& device) {
 }
 
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {
+    constexpr auto kLast = static_cast<std::uint32_t>(LinkMove::kKernel);
+    if (values.link_exchange > kLast)
+        throw UserError(fmt::format("link exchange {}: must be 0..{}", values.link_exchange, kLast));
     kernels.lanes = values.lanes;
     kernels.group_size = values.group;
     kernels.local_words = kernels.local_words && values.local_words != 0;
     kernels.more = {values.batch, values.trees, values.beams, values.registers};
+    if (kernels.link_move == LinkMove::kOfDevice) kernels.link_move = static_cast<LinkMove>(values.link_exchange);
     return kernels;
 }
 
@@ -26,10 +34,13 @@ TunedUse::TunedUse(TunedSource source) : before_(std::move(source_in_use())) { s
 TunedUse::~TunedUse() { source_in_use() = std::move(before_); }
 
 KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what) {
+    const bool links_named = kernels.link_move != LinkMove::kOfDevice;
+    kernels.link_origin = links_named ? "options" : "";
     if (kernels.lanes == 0 && kernels.group_size == 0) {
         const auto tuned = source_in_use() ? source_in_use()(device, what) : std::nullopt;
         kernels = with_values(kernels, tuned ? tuned->values : default_values(device));
         kernels.origin = tuned ? tuned->origin : "defaults";
+        if (!links_named && kernels.link_move != LinkMove::kOfDevice) kernels.link_origin = kernels.origin;
         return kernels;
     }
     if (!kernels.lanes) kernels.lanes = default_lanes(device);

@@ -26,23 +26,26 @@ struct TunedValues {
     std::uint32_t lanes = 1, group = 1;
     std::uint32_t local_words = 1;  // 1: as KernelChoice::local_words, 0: words stay where they are
     std::uint32_t batch = 0, trees = 0, beams = 0, registers = 0;  // KernelTuning
+    std::uint32_t link_exchange = 0;                               // LinkMove
     bool operator==(const TunedValues&) const = default;
 };
 
 /// The names under which values are printed and kept.
-inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>, 7> kTunedNames = {
+inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>, 8> kTunedNames = {
     {{"lanes", &TunedValues::lanes},
      {"group", &TunedValues::group},
      {"local_words", &TunedValues::local_words},
      {"batch", &TunedValues::batch},
      {"trees", &TunedValues::trees},
      {"beams", &TunedValues::beams},
-     {"registers", &TunedValues::registers}}};
+     {"registers", &TunedValues::registers},
+     {"link_exchange", &TunedValues::link_exchange}}};
 
 /// The defaults of a device, by which nothing is lost where nothing was tuned.
 TunedValues default_values(const DeviceInfo& device);
 
-/// `kernels` with these values in place of its own.
+/// `kernels` with these values in place of its own; links as it says, where it says so. UserError for values that name
+/// nothing.
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values);
 
 /// What is known of a device: values, and where they come from ("FILE, DATE"). Empty: nothing.
@@ -66,7 +69,8 @@ class TunedUse {
 };
 
 /// `kernels` with lanes and group chosen, and `origin` as reports tell it: "options" where the user has named either,
-/// and then the other is the default; else what is known of the device, or "defaults".
+/// and then the other is the default; else what is known of the device, or "defaults". `link_origin` is "options" where
+/// the user has named links, and empty where they are left to the device.
 KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what);
 
 }  // namespace raya

@@ -36,6 +36,7 @@ Json torus_json(const TorusReport& t) {
             {"links", t.links},
             {"inject", t.inject},
             {"link_exchange", t.link_exchange},
+            {"link_exchange_from", t.link_origin},
             {"discarded", t.discarded},
             {"returns", {{"of", returns_name(t.packets)}, {"messages", t.returns}}},
             {"message_words", {{"ray", t.packets.ray_words}, {"return", t.packets.return_words()}}},

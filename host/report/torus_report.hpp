@@ -17,6 +17,7 @@ struct TorusReport {
     std::string links;                               // "torus3d" or "torus2d"
     std::string inject;                              // "root" or "all": who makes the primary rays
     std::string link_exchange;                       // "copies" or "kernel": how packets came over the device's links
+    std::string link_origin;                         // "options", "measured", "defaults", or what was tuned: who chose
     PacketCharge packets;                            // what the model charges
     std::uint64_t returns = 0;                       // that are messages
     std::uint64_t discarded = 0;                     // primary rays that nodes made and threw away

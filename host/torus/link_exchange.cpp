@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace raya {
 namespace {
@@ -117,7 +118,7 @@ bool LinkExchange::leads_away(std::uint32_t link, std::uint32_t node) const {
 LinkExchange::Face& LinkExchange::face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const {
     for (Face& f : faces)
         if (f.rank == rank && f.link == link) return f;
-    return faces.emplace_back(Face{rank, link, {}, {}, {}});
+    return faces.emplace_back(Face{rank, link, {}, {}});
 }
 
 std::vector<LinkExchange::Crossing> LinkExchange::find_crossings() const {
@@ -141,38 +142,53 @@ void LinkExchange::leave(const NodeStatus& status, std::vector<Outgoing>& out, s
         Face& f = face(share_.has(node) ? leaving_ : coming_, rank, link);
         f.nodes.push_back(node);
         f.packets.push_back(packets);
-        f.words.resize(f.words.size() + box_words(packets));
+        f.words += box_words(packets);
     }
+    const auto words_of = [](const std::vector<Face>& faces) {
+        return std::accumulate(faces.begin(), faces.end(), std::size_t{0},
+                               [](std::size_t words, const Face& f) { return words + f.words; });
+    };
     const auto tag = [&](const Face& f) {
         return cargo_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(f.link);
     };
-    for (Face& f : leaving_) {
-        read_face(f);
-        out.push_back({f.rank, tag(f), std::as_bytes(std::span(f.words))});
+    if (const std::size_t words = words_of(leaving_); words > 0 && (!left_ || left_->size() < words))
+        left_.emplace(session_.landing<std::uint32_t>(cargo_.label + " leaves", words));
+    std::size_t at = 0;
+    for (const Face& f : leaving_) {
+        read_face(f, at);
+        at += f.words;
+        out.push_back({f.rank, tag(f), std::as_bytes(left_->first(at).last(f.words))});
     }
-    for (Face& f : coming_) in.push_back({f.rank, tag(f), std::as_writable_bytes(std::span(f.words))});
+    come_.resize(words_of(coming_));
+    std::span<std::uint32_t> come = come_;
+    for (const Face& f : coming_) {
+        in.push_back({f.rank, tag(f), std::as_writable_bytes(come.first(f.words))});
+        come = come.subspan(f.words);
+    }
 }
 
-void LinkExchange::read_face(Face& f) {
-    std::span<std::uint32_t> to = f.words;
+void LinkExchange::read_face(const Face& f, std::size_t to) {
     for (std::size_t i = 0; i < f.nodes.size(); ++i) {
         const std::size_t words = box_words(f.packets[i]);
-        session_.read(cargo_.label + " leaves", outboxes_, to.first(words),
-                      outbox_at(f.link, share_.slot_of(f.nodes[i])));
-        to = to.subspan(words);
+        session_.read(cargo_.label + " leaves", outboxes_, outbox_at(f.link, share_.slot_of(f.nodes[i])), *left_, to,
+                      words);
+        to += words;
     }
+}
+
+void LinkExchange::wait_for_leaving() {
+    if (left_) session_.wait(cargo_.label + " leaves", *left_);
 }
 
 void LinkExchange::arrive() {
-    for (const Face& f : coming_) {
-        std::span<const std::uint32_t> from = f.words;
+    std::span<const std::uint32_t> from = come_;
+    for (const Face& f : coming_)
         for (std::size_t i = 0; i < f.nodes.size(); ++i) {
             const std::size_t words = box_words(f.packets[i]);
             session_.write(cargo_.label + " arrives", inboxes_, from.first(words),
                            inbox_at(f.link, share_.inbox(f.link, f.nodes[i])));
             from = from.subspan(words);
         }
-    }
 }
 
 std::uint64_t LinkExchange::cost(const Span& span) const {

@@ -56,8 +56,10 @@ class LinkExchange {
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     /// What goes over links that lead to other ranks, or come from there, in one exchange(): adds the messages that
-    /// carry it to `out` and `in`. When they are through, arrive() puts it into the inboxes.
+    /// carry it to `out` and `in`. They may go after wait_for_leaving(); when they are through, arrive() puts them into
+    /// the inboxes.
     void leave(const NodeStatus& status, std::vector<Outgoing>& out, std::vector<Incoming>& in);
+    void wait_for_leaving();
     void arrive();
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
@@ -100,11 +102,11 @@ class LinkExchange {
         std::uint32_t rank = 0, link = 0;
         std::vector<std::uint32_t> nodes;  // where the links start, ascending
         std::vector<std::uint32_t> packets;
-        std::vector<std::uint32_t> words;
+        std::size_t words = 0;  // of all its boxes
     };
     std::vector<Crossing> find_crossings() const;
     Face& face(std::vector<Face>& faces, std::uint32_t rank, std::uint32_t link) const;
-    void read_face(Face& face);
+    void read_face(const Face& face, std::size_t to);
 
     Session& session_;
     const NodeShare& share_;
@@ -125,6 +127,8 @@ class LinkExchange {
     std::uint64_t moved_ = 0;
     const std::vector<Crossing> crossings_;  // by link, then by node
     std::vector<Face> leaving_, coming_;
+    std::optional<Landing<std::uint32_t>> left_;  // words of leaving_, one face after another
+    std::vector<std::uint32_t> come_;             // of coming_
     std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * cargo_.packet_words; }
     std::size_t outbox_at(std::uint32_t link, std::uint32_t slot) const {
         return raya_box_at(link, nodes_, slot, capacity_, cargo_.packet_words);

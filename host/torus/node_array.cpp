@@ -1,6 +1,7 @@
 #include "host/torus/node_array.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "host/torus/census.hpp"
 #include "host/torus/loops_cut.hpp"
@@ -68,6 +69,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       status_(session_.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
       ways_in_(session_.buffer<std::uint32_t>("ways in", std::size_t{nodes_} * RAYA_LINKS)),
       returns_(session_.buffer<raya_head>("returns", share.has(RAYA_ROOT) ? buffers.queue : 1)),
+      returns_here_(session_.landing<raya_head>("returns", returns_.size())),
       events_(session_.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
       made_(session_.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
       ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
@@ -122,6 +124,7 @@ void NodeArray::clear() {
     rays_.clear();
     homeward_.clear();
     plan_.clear();
+    returns_coming_ = 0;
 }
 
 template <class Launch>
@@ -190,6 +193,8 @@ std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
         std::vector<Incoming> in;
         rays_.leave(status, out, in);
         homeward_.leave(status, out, in);
+        rays_.wait_for_leaving();
+        homeward_.wait_for_leaving();
         ranks_.start(out, in);
     }
     std::vector<std::uint64_t> words(std::size_t{raya_nodes(settings_.torus)} * RAYA_LINKS);
@@ -244,10 +249,18 @@ void NodeArray::tell_work(const NodeStatus& injected, const NodeWorkSink& sink) 
 }
 
 void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns) {
+    gather_rest(returns);
     if (!share_.has(RAYA_ROOT)) return;
-    const std::size_t waiting = status.at(RAYA_ROOT, RAYA_STATUS_HOST), before = returns.size();
-    returns.resize(before + waiting);
-    session_.read("gather", returns_, std::span(returns).subspan(before));
+    returns_coming_ = status.at(RAYA_ROOT, RAYA_STATUS_HOST);
+    session_.read("gather", returns_, 0, returns_here_, 0, returns_coming_);
+}
+
+// In the next superstep they are here: the look that follows has waited for them too.
+void NodeArray::gather_rest(std::vector<raya_head>& returns) {
+    if (returns_coming_ == 0) return;
+    session_.wait("gather", returns_here_);
+    const std::span<const raya_head> here = returns_here_.first(std::exchange(returns_coming_, 0));
+    returns.insert(returns.end(), here.begin(), here.end());
 }
 
 std::vector<std::uint64_t> NodeArray::read_events() {

@@ -58,8 +58,10 @@ class NodeArray {
     /// nodes said between those two. For kernels that tell what packets cost (KernelOptions::costs), on one rank.
     void tell_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// Return packets that have reached the root since the last call are appended, in rank 0.
+    /// Return packets that wait at the root are on their way to the host when this returns, in rank 0; those of the
+    /// last call are appended to `returns`. After the last superstep gather_rest() appends what is on its way still.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
+    void gather_rest(std::vector<raya_head>& returns);
 
     /// Messages in the outboxes that were made or changed by the node that sends them; for a trace of the traffic. To
     /// be called in every superstep; with an empty sink, in all ranks alike, those of this one are left out. Rank 0 is
@@ -71,7 +73,8 @@ class NodeArray {
     PacketCounts read_ended();
 
     std::vector<std::uint64_t> link_packets() const;  // [node][RAYA_LINKS], since clear(): messages; of all ranks
-    bool links_by_kernel() const { return links_by_kernel_; }  // else by copies
+    bool links_by_kernel() const { return links_by_kernel_; }          // else by copies
+    const std::string& links_origin() const { return links_origin_; }  // who chose: see TorusResult
     std::uint64_t moved_rays() const { return rays_.moved(); }
     std::uint64_t moved_returns() const { return homeward_.moved(); }
     const std::string& build_options() const { return build_options_; }
@@ -108,6 +111,8 @@ class NodeArray {
     Buffer<raya_packet> queues_;
     Buffer<std::uint32_t> status_, ways_in_;
     Buffer<raya_head> returns_;
+    Landing<raya_head> returns_here_;
+    std::size_t returns_coming_ = 0;  // into returns_here_
     Buffer<std::uint64_t> events_, made_, ended_;
     Buffer<raya_treated> treated_;
     LinkExchange rays_, homeward_;  // boxes of rays, of returns
@@ -116,6 +121,7 @@ class NodeArray {
     node_kernels::Route route_;
     node_kernels::Accept accept_;
     bool links_by_kernel_ = false;
+    std::string links_origin_;
     std::string build_options_;
 };
 

@@ -17,8 +17,10 @@ constexpr int kTimes = 5;               // of which the shortest counts
 
 // On a CPU the two differ little (kernels/README.md has figures), and copies need no kernel: there nothing is measured.
 void NodeArray::choose_link_move(Kernels& kernels) {
-    const LinkMove wanted = settings_.link_move;
-    if (wanted == LinkMove::kCopies || (wanted == LinkMove::kMeasured && session_.device().type == "cpu")) return;
+    const LinkMove wanted = settings_.kernels.link_move;
+    const bool cpu = session_.device().type == "cpu";
+    links_origin_ = wanted != LinkMove::kOfDevice ? settings_.kernels.link_origin : cpu ? "defaults" : "measured";
+    if (wanted == LinkMove::kCopies || (wanted == LinkMove::kOfDevice && cpu)) return;
     const auto kernel = kernels.get<ExchangeKernel>();
     if (wanted == LinkMove::kKernel) return use_kernel(kernel);
     const double by_copies = exchange_seconds();

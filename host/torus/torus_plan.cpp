@@ -13,6 +13,18 @@
 
 namespace raya {
 
+TorusSettings usual_torus(const ImageSize& size) {
+    TorusSettings s;
+    s.machine = machine_named("torus");
+    s.width = size.width;
+    s.height = size.height;
+    s.torus = make_torus(kUsualNodes, s.links);
+    s.voxels = kUsualNodes;
+    s.bounces = s.machine.bounces;
+    s.format = s.machine.format;
+    return s;
+}
+
 JobSettings job_settings(const TorusSettings& s, const LengthScale& scale) {
     return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(s.packets), s.format, scale.exponent};
 }

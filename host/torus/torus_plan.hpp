@@ -4,6 +4,7 @@
 
 #include "host/cl/device_info.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/machine/image_size.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
@@ -11,6 +12,9 @@
 #include "host/torus/torus_settings.hpp"
 
 namespace raya {
+
+/// The usual nodes with a voxel each, without a limit of memory, on the machine's bounces and in its format.
+TorusSettings usual_torus(const ImageSize& size);
 
 JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale);
 

@@ -206,7 +206,10 @@ std::optional<StandstillFigures> TorusRenderer::Parts::run(TorusResult& result, 
         if (goes_on && nodes->inner().count > 0) compute(nodes->inner(), next, injects, watch.work);
         nodes->arrive();
         nodes->accept(nodes->border(), room, superstep);
-        if (ended) return {};
+        if (ended) {
+            nodes->gather_rest(returns);
+            return {};
+        }
         if (!goes_on)
             return StandstillFigures{
                 scene, superstep, census.live, census.full, raya_nodes(settings.torus), job.buffers.queue};
@@ -274,6 +277,7 @@ void TorusRenderer::Parts::describe(TorusResult& result) const {
     result.copied_words = nodes->words_local() ? job.words : 0;
     result.node_bytes = node_bytes(job.buffers);
     result.links_by_kernel = nodes->links_by_kernel();
+    result.links_origin = nodes->links_origin();
     result.parts_here = share.nodes();
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;

@@ -35,9 +35,10 @@ struct TorusResult {
     std::uint64_t copies = 0;                         // of objects in several voxels
     LengthScale scale;
     NodeBuffers buffers;
-    std::uint64_t node_bytes = 0;     // of the fullest node: words and buffers
-    std::uint64_t copied_words = 0;   // of the scene, by all nodes into local memory, whenever a kernel starts
-    bool links_by_kernel = false;     // packets came over the device's links by a kernel, else by copies
+    std::uint64_t node_bytes = 0;    // of the fullest node: words and buffers
+    std::uint64_t copied_words = 0;  // of the scene, by all nodes into local memory, whenever a kernel starts
+    bool links_by_kernel = false;    // packets came over the device's links by a kernel, else by copies
+    std::string links_origin;  // who chose: "options", the file and date of what was tuned, "measured", "defaults"
     std::uint64_t contributions = 0;  // return packets that reached the host
     std::uint32_t parts_here = 0;     // nodes of this rank
     RankTraffic traffic;              // of this rank, while it rendered

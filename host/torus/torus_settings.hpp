@@ -1,5 +1,6 @@
 // What a render on the torus machine is asked for.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -20,9 +21,8 @@ struct PixelSubset {
     std::uint32_t stride = 1, first = 0;
 };
 
-/// How packets come over the links of a device: as copies between buffers, as a kernel of their own, or by the one that
-/// takes less time there. The same packets arrive.
-enum class LinkMove { kMeasured, kCopies, kKernel };
+/// Nodes along x, y and z where nothing else is asked for (Yoshitani & Yamazaki).
+inline constexpr std::array<std::uint32_t, 3> kUsualNodes = {4, 4, 4};
 
 struct TorusSettings {
     Machine machine;
@@ -39,7 +39,6 @@ struct TorusSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels;
-    LinkMove link_move = LinkMove::kMeasured;
     std::uint32_t work_per_launch = 0;  // of a node, in a kernel's units; 0: as the device needs it (LaunchPlan)
     bool history = false;  // nodes tell what each packet cost them, which TorusRenderer::render() needs for a history
 };

@@ -12,9 +12,10 @@ namespace raya {
 
 /// A knob and the values that are tried, in an order in which neighbours are alike: `lanes` 1, 4, 8, 16.
 struct Knob {
-    std::string name;
     std::uint32_t TunedValues::*value = nullptr;
     std::vector<std::uint32_t> values;
+
+    const char* name() const;  // of kTunedNames
 };
 
 /// A candidate that takes this part of the best one's time is better; less is noise.
@@ -38,9 +39,9 @@ void for_each_candidate(const Space& space, const std::function<void(const Candi
 /// What can be tuned of these kernels on this device: lanes; work-items of a group, few on a CPU, where lanes do the
 /// work, and one on torus nodes, whose packets so keep their order, elsewhere up to what the device takes; words in
 /// local memory or where they lie, where rays meet all of them; the batch of spheres, where fp32 tests them all; trees
-/// and beams, with a grid; registers, where the compiler can be told. What changes the modelled machine's counts (the
-/// tree's width, the queues of torus nodes) is no knob: a report's modelled figures would follow from what a device was
-/// tuned to.
+/// and beams, with a grid; how packets come over links, on the torus; registers, where the compiler can be told. What
+/// changes the modelled machine's counts (the tree's width, the queues of torus nodes) is no knob: a report's modelled
+/// figures would follow from what a device was tuned to.
 Space space_of(const DeviceInfo& device, const TunedFor& what);
 
 /// "lanes 16, group 1 -> 2, batch own": the knobs of a space, with what changes.

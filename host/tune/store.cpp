@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKind = "raya bench --tune";
-constexpr std::uint64_t kVersion = 1;                                        // of the file's form
+constexpr std::uint64_t kVersion = 2;                                        // of the file's form
 constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // by RAYA_ACCEL_*
 
 Json to_json(const TunedEntry& entry) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "host/files/json.hpp"
-#include "host/tune/values_json.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -30,9 +29,10 @@ Json measurement(const char* name, double value, const char* unit) {
     return {{"name", name}, {"value", value}, {"unit", unit}};
 }
 
-Json result_json(const Workload& workload, const Trial& trial) {
-    Json configuration = to_json(trial.values);
-    configuration["workload"] = workload.name();
+Json result_json(const Tuning& tuning, const Trial& trial) {
+    Json configuration = Json::object();
+    for (const Knob& knob : tuning.space.knobs) configuration[knob.name()] = trial.values.*knob.value;
+    configuration["workload"] = tuning.workload.name();
     const bool correct = trial.fate == Fate::kCorrect;
     Json runtimes = Json::list(), measurements = Json::list();
     if (correct) {
@@ -61,7 +61,7 @@ std::string t4_text(const DeviceInfo& device, const std::vector<Tuning>& tunings
     Json results = Json::list();
     for (const Tuning& tuning : tunings)
         for (const Trial& trial : tuning.trials)
-            if (trial.fate != Fate::kUnfinished) results.push_back(result_json(tuning.workload, trial));
+            if (trial.fate != Fate::kUnfinished) results.push_back(result_json(tuning, trial));
     return Json{{"schema_version", kSchemaVersion},
                 {"metadata",
                  {{"timeunit", "milliseconds"},

@@ -13,7 +13,7 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/nff_reader.hpp"
-#include "host/torus/topology.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
 
 namespace raya {
@@ -51,12 +51,7 @@ RingSettings ring_settings(const Workload& workload, const Picture& picture, con
 }
 
 TorusSettings torus_settings(const Workload& workload, const Picture& picture, const KernelChoice& kernels) {
-    TorusSettings s;
-    s.machine = machine_named("torus");
-    s.width = picture.size.width;
-    s.height = picture.size.height;
-    s.torus = make_torus({4, 4, 4}, Links::kTorus3d);
-    s.voxels = {4, 4, 4};
+    TorusSettings s = usual_torus(picture.size);
     s.bounces = kBounces;
     s.format = workload.format;
     s.kernels = kernels;

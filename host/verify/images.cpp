@@ -26,12 +26,14 @@ struct Rendering {
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's own
     MappingRule mapping = cyclic_mapping(8);  // of the ring
     std::uint32_t pes = kPictureSide;
-    std::uint32_t work_per_launch = 0;  // tests and steps of a lane; 0: as much as takes about a second
+    std::uint32_t work_per_launch =
+        0;  // tests and steps of a lane, of a node what its kernels count; 0: about a second
     AccelKind accel = AccelKind::kNone;
     bool torus = false;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
+    LinkMove link_move = LinkMove::kCopies;
     bool global_words = false;  // as where local memory is too small for them
     bool refined = false;       // as where division, square root and a b + c are not rounded correctly
 
@@ -41,7 +43,8 @@ struct Rendering {
                                 : fmt::format("{} on {}{}", mapping_name(mapping), pes,
                                               accel == AccelKind::kNone ? "" : ", " + accel_text({.kind = accel}));
         if (mapping.kind == RAYA_FOLD_BLOCK) way += ", block fold";
-        if (work_per_launch) way += fmt::format(", launches of {} tests", work_per_launch);
+        if (work_per_launch) way += fmt::format(", launches of {} {}", work_per_launch, torus ? "units" : "tests");
+        if (link_move == LinkMove::kKernel) way += ", links by a kernel";
         if (global_words) way += ", global words";
         if (refined) way += ", division refined";
         if (lanes) way += fmt::format(", {}x{}", lanes, group_size);
@@ -85,7 +88,9 @@ Rendered render_on_torus(const Verification& v, Session& session, const Renderin
     s.bounces = kPictureBounces;
     s.format = parse_format(picture.format);
     s.sampling = picture.sampling;
+    s.work_per_launch = r.work_per_launch;
     s.kernels = kernels_for(v, r);
+    s.kernels.link_move = r.link_move;
     TorusResult result = TorusRenderer(session, scene_of(picture), s).render();
     return {std::move(result.image), result.build_options};
 }
@@ -190,6 +195,11 @@ std::vector<Rendering> usual_renderings() {
         {.picture = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
         {.picture = "cones fp32", .accel = AccelKind::kBvh},
         {.picture = "polygons fp32", .from = Depth::kQuick, .torus = true},
+        {.picture = "polygons fp32",
+         .from = Depth::kQuick,
+         .work_per_launch = 3,
+         .torus = true,
+         .link_move = LinkMove::kKernel},
         {.picture = "polygons fp32", .torus = true, .global_words = true},
         {.picture = "polygons fp32",
          .from = Depth::kBrief,

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 
 #include "host/checks/transfers.hpp"
@@ -70,11 +71,17 @@ void verify_transfers(Verification& v) {
         check(fmt::format("ring: rotations of {} PEs", pes),
               [p = pes, w = words](Session& s) { return check_rotations(s, p, w); });
     for (const Links links : {Links::kTorus3d, Links::kTorus2d})
-        for (const std::uint32_t every : {1u, 50u})
-            check(fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "all boxes" : "few boxes"),
-                  [&](Session& s) {
-                      return check_links(s, make_torus({3, 2, 4}, links), every);
-                  });
+        for (const std::uint32_t every : {1u, 50u}) {
+            const std::string name =
+                fmt::format("{}: exchange of {}", links_name(links), every == 1 ? "all boxes" : "few boxes");
+            const raya_torus torus = make_torus({3, 2, 4}, links);
+            check(name, [&](Session& s) { return check_links(s, torus, every); });
+            v.check("machine", name + " by a kernel", [&](Session& s) {
+                // Boxes of up to 12 units of 8 words: some work-items have one, some none.
+                Kernels kernels(s, {.group_size = std::min(8u, most_group_size(v.device()))}, v.sources());
+                return with_remedies(check_links(s, torus, every, &kernels), "", compiler_at_fault());
+            });
+        }
 }
 
 }  // namespace

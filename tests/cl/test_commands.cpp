@@ -222,7 +222,7 @@ TEST_CASE("transfers through pinned memory move the same bytes, however large", 
     constexpr std::uint64_t kSeed = 20261123;
     SplitMix random(kSeed);
     Session session(choose_device(""), Timing::kOn, Transfers::kStaged);
-    constexpr std::size_t kHalf = Staging::kHalfBytes / sizeof(cl_uint);
+    constexpr std::size_t kHalf = kPinnedHalf / sizeof(cl_uint);
     Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", 5 * kHalf);
     session.fill("clear", buffer, 0);
     std::vector<cl_uint> expected(buffer.size());
@@ -248,6 +248,40 @@ TEST_CASE("transfers through pinned memory move the same bytes, however large", 
     for (const CommandRecord& c : session.profile().commands())
         if (c.label == "contents") bytes += c.bytes;
     CHECK(bytes == buffer.bytes());
+}
+
+TEST_CASE("what is read while the host goes on is what there was then, and small writes leave their words alone",
+          "[cl]") {
+    constexpr std::uint64_t kSeed = 20261124;
+    SplitMix random(kSeed);
+    for (const Transfers transfers : {Transfers::kDirect, Transfers::kStaged}) {
+        Session session(choose_device(""), Timing::kOn, transfers);
+        // Of plain memory's halves several are filled, without a wait between.
+        constexpr std::size_t kWords = kPlainHalf / sizeof(cl_uint);
+        Buffer<cl_uint> buffer = session.buffer<cl_uint>("words", kWords);
+        Landing<cl_uint> landing = session.landing<cl_uint>("words", 4 * kWords);
+        std::vector<cl_uint> there(kWords), expected;
+        session.write("there", buffer, there);
+        while (expected.size() < landing.size()) {
+            const std::size_t count = random.next() % 16 ? 1 + random.next() % 200 : kWords - random.next() % 2,
+                              offset = random.next() % (kWords - count + 1);
+            std::vector<cl_uint> words = counting(count, static_cast<cl_uint>(random.next()));
+            session.write("there", buffer, words, offset);
+            std::copy(words.begin(), words.end(), there.begin() + static_cast<std::ptrdiff_t>(offset));
+            std::fill(words.begin(), words.end(), 0xdeadbeef);
+            const std::size_t back = std::min(1 + random.next() % 300, landing.size() - expected.size()),
+                              from = random.next() % (kWords - back + 1);
+            session.read("back", buffer, from, landing, expected.size(), back);
+            expected.insert(expected.end(), there.begin() + static_cast<std::ptrdiff_t>(from),
+                            there.begin() + static_cast<std::ptrdiff_t>(from + back));
+        }
+        session.wait("back", landing);
+        const std::span<const cl_uint> got = landing.first(landing.size());
+        CAPTURE(kSeed, transfers == Transfers::kStaged);
+        CHECK(std::equal(got.begin(), got.end(), expected.begin(), expected.end()));
+        CHECK_THROWS_AS(session.read("back", buffer, 0, landing, landing.size(), 1), std::out_of_range);
+        CHECK_THROWS_AS(session.read("back", buffer, kWords, landing, 0, 1), std::out_of_range);
+    }
 }
 
 TEST_CASE("thousands of commands in one go are all recorded", "[cl]") {

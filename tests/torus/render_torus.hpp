@@ -29,7 +29,7 @@ struct TorusCase {
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};
-    LinkMove link_move = LinkMove::kMeasured;
+    LinkMove link_move = LinkMove::kOfDevice;
     KernelSources sources{};
 };
 
@@ -49,12 +49,12 @@ inline TorusSettings settings_of(const TorusCase& c) {
     s.packets = c.packets;
     s.queue = c.queue;
     s.pixels = c.pixels;
-    s.link_move = c.link_move;
     s.bounces = c.bounces;
     s.format = parse_format(c.format);
     s.kernels.lanes = c.lanes;
     s.kernels.group_size = c.group;
     s.kernels.sources = c.sources;
+    s.kernels.link_move = c.link_move;
     return s;
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "host/kernels/tuned.hpp"
 #include "host/scene/word_records.hpp"
 #include "host/torus/launch_plan.hpp"
 #include "host/torus/standstill.hpp"
@@ -93,7 +94,7 @@ TEST_CASE("launches of little work, and links by a kernel, make the image and th
         TorusSettings settings = settings_of(c);
         const std::uint32_t works[] = {1, 7, 100};
         settings.work_per_launch = works[i % 3];
-        settings.link_move = i % 2 ? LinkMove::kKernel : LinkMove::kCopies;
+        settings.kernels.link_move = i % 2 ? LinkMove::kKernel : LinkMove::kCopies;
         CAPTURE(seed, i, settings.work_per_launch, case_text(c));
         try {
             const TorusResult whole = render_torus(session, scene, c);
@@ -108,17 +109,45 @@ TEST_CASE("launches of little work, and links by a kernel, make the image and th
     CHECK(bounded > 4 * once);
 }
 
+// Up to what a GPU's nodes have by default, and the most there is.
 TEST_CASE("work-groups of many work-items make the same image", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
     TorusCase c{.width = 12, .height = 10, .nodes = {2, 2, 1}, .lanes = 1, .group = 1, .bounces = 3};
     c.queue = 400;
     const std::string right = one_image(render_torus(session, scene, c));
-    for (const std::uint32_t group : quick(1, {64u, 33u})) {
+    for (const std::uint32_t group : quick(2, {128u, 64u, 33u, 256u, 1024u})) {
+        if (group > session.device().max_group_size) continue;
         CAPTURE(group);
         c.group = group;
+        c.link_move = group == 128 ? LinkMove::kKernel : LinkMove::kCopies;
         CHECK(one_image(render_torus(session, scene, c)) == right);
     }
+}
+
+TEST_CASE("links go as the device was tuned to, unless they are named", "[torus]") {
+    Session session(choose_device(""));
+    const Scene scene = random_view_scene(kRichScenes[0]);
+    const auto rendered = [&](LinkMove named) {
+        const TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .bounces = 1, .link_move = named};
+        return render_torus(session, scene, c);
+    };
+    const bool cpu = session.device().type == "cpu";
+    const TorusResult untuned = rendered(LinkMove::kOfDevice);
+    CHECK(untuned.links_origin == (cpu ? "defaults" : "measured"));
+    if (cpu) CHECK_FALSE(untuned.links_by_kernel);
+    const TunedUse use([](const DeviceInfo& device, const TunedFor&) {
+        TunedValues values = default_values(device);
+        values.link_exchange = static_cast<std::uint32_t>(LinkMove::kKernel);
+        return std::optional(TunedChoice{values, "FILE, DATE"});
+    });
+    const TorusResult tuned = rendered(LinkMove::kOfDevice), named = rendered(LinkMove::kCopies);
+    CHECK(tuned.links_by_kernel);
+    CHECK(tuned.links_origin == "FILE, DATE");
+    CHECK_FALSE(named.links_by_kernel);
+    CHECK(named.links_origin == "options");
+    CHECK(one_image(tuned) == one_image(untuned));
+    CHECK(one_image(named) == one_image(untuned));
 }
 
 TEST_CASE("a node's launch is bounded by tests, and by the turns of loops where a device counts them", "[torus]") {

@@ -18,7 +18,7 @@ Space random_space(std::mt19937& random) {
     Space space;
     const std::size_t knobs = 3 + below(3);
     for (std::size_t k = 0; k < knobs; ++k) {
-        space.knobs.push_back({"knob", &TunedValues::lanes, std::vector<std::uint32_t>(2 + below(5))});
+        space.knobs.push_back({&TunedValues::lanes, std::vector<std::uint32_t>(2 + below(5))});
         space.start.push_back(below(static_cast<std::uint32_t>(space.knobs.back().values.size())));
     }
     return space;
@@ -195,7 +195,7 @@ TEST_CASE("a space has the defaults in it, and what the device takes", "[tune]")
             CAPTURE(type, most, platform, accel);
             CHECK(space.values_of(space.start) == default_values(device));
             bool limits_registers = false;
-            for (const Knob& knob : space.knobs) limits_registers |= knob.name == "registers";
+            for (const Knob& knob : space.knobs) limits_registers |= knob.value == &TunedValues::registers;
             CHECK(limits_registers == (device.platform == "NVIDIA CUDA"));
             for_each_candidate(space, [&](const Candidate& candidate) {
                 const KernelChoice kernels = with_values({}, space.values_of(candidate));
@@ -204,6 +204,27 @@ TEST_CASE("a space has the defaults in it, and what the device takes", "[tune]")
                     device));
             });
         }
+}
+
+TEST_CASE("how packets come over links is a knob of the torus alone, with copies by name where they are no default",
+          "[tune]") {
+    const auto moves_of = [](const char* type, const TunedFor& what) {
+        DeviceInfo device;
+        device.type = type;
+        device.max_group_size = 256;
+        for (const Knob& knob : space_of(device, what).knobs)
+            if (knob.value == &TunedValues::link_exchange) return knob.values;
+        return std::vector<std::uint32_t>{};
+    };
+    CHECK(moves_of("cpu", {}).empty());
+    CHECK(moves_of("cpu", {.torus = true}) == std::vector<std::uint32_t>{0, 2});
+    CHECK(moves_of("gpu", {.torus = true}) == std::vector<std::uint32_t>{0, 1, 2});
+    DeviceInfo cpu;
+    cpu.type = "cpu";
+    const Space space = space_of(cpu, {.torus = true});
+    TunedValues kernel = space.defaults;
+    kernel.link_exchange = 2;
+    CHECK_THAT(change_text(space, space.defaults, kernel), Catch::EndsWith(", link exchange own -> kernel"));
 }
 
 }  // namespace

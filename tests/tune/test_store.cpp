@@ -28,7 +28,7 @@ const TunedFile kFile{.date = "2026-11-22",
                                    .speedup = 1.25,
                                    .scene = "own"},
                                   {.what = {.torus = true, .accel = RAYA_ACCEL_NONE, .fp32 = false},
-                                   .values = {1, 64, 1, 0, 0, 0, 0},
+                                   .values = {1, 64, 1, 0, 0, 0, 0, 2},
                                    .speedup = 1,
                                    .scene = "x.nff"}}};
 
@@ -78,13 +78,14 @@ TEST_CASE("a damaged file, and one of something else, is refused with the reason
     for (const auto& [bad, reason] : {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "damaged"},
                                       {"", "damaged"},
                                       {"{}", "no file of raya bench --tune"},
-                                      {changed("\"version\": 1", "\"version\": 2"), "another form"},
+                                      {changed("\"version\": 2", "\"version\": 1"), "another form"},
                                       {changed("\"raya\": \"", "\"raya\": \"9."), "another version of raya: 9."},
                                       {changed("550.1", "551.0"), "another device's driver: 551.0, not 550.1"},
                                       {changed("GeForce", "Radeon"), "another device's name"},
                                       {changed("\"lanes\": 4", "\"lanes\": 5"), "lanes 5"},
                                       {changed("\"group\": 16", "\"group\": 100000"), "group 100000"},
                                       {changed("\"batch\": 8", "\"batch\": 33"), "batch 33"},
+                                      {changed("\"link_exchange\": 2", "\"link_exchange\": 3"), "link exchange 3"},
                                       {changed("\"trees\": 2", "\"trees\": -2"), "damaged"},
                                       {changed("\"accel\": \"grid\"", "\"accel\": \"octree\""), "octree"},
                                       {changed("\"beams\"", "\"beam\""), "damaged"}}) {
@@ -163,19 +164,29 @@ TEST_CASE("renders take what is known of a device, unless lanes or group are nam
     CHECK(chosen({}, device, what).origin == "defaults");
     const TunedUse use([](const DeviceInfo&, const TunedFor& asked) -> std::optional<TunedChoice> {
         if (asked.torus) return {};
-        return TunedChoice{{4, 2, 0, 8, 2, 1, 96}, "FILE, DATE"};
+        return TunedChoice{{4, 2, 0, 8, 2, 1, 96, 2}, "FILE, DATE"};
     });
     const KernelChoice tuned = chosen({}, device, what);
     CHECK(tuned.origin == "FILE, DATE");
     CHECK((tuned.lanes == 4 && tuned.group_size == 2 && !tuned.local_words));
     CHECK(tuned.more == KernelTuning{8, 2, 1, 96});
-    CHECK(chosen({}, device, {.torus = true}).origin == "defaults");
+    CHECK(tuned.link_move == LinkMove::kKernel);
+    CHECK(tuned.link_origin == "FILE, DATE");
+    const KernelChoice unknown = chosen({}, device, {.torus = true});
+    CHECK(unknown.origin == "defaults");
+    CHECK((unknown.link_move == LinkMove::kOfDevice && unknown.link_origin.empty()));
+    KernelChoice by_copies;
+    by_copies.link_move = LinkMove::kCopies;
+    CHECK(chosen(by_copies, device, what).link_move == LinkMove::kCopies);
+    CHECK(chosen(by_copies, device, what).link_origin == "options");
+    CHECK(chosen(by_copies, device, what).lanes == 4);
     KernelChoice named;
     named.group_size = 3;
     const KernelChoice options = chosen(named, device, what);
     CHECK(options.origin == "options");
     CHECK((options.lanes == 16 && options.group_size == 3 && options.local_words));
     CHECK(options.more == KernelTuning{});
+    CHECK((options.link_move == LinkMove::kOfDevice && options.link_origin.empty()));
 }
 
 }  // namespace

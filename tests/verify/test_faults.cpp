@@ -108,7 +108,9 @@ TEST_CASE("faults of arithmetic, hits and walk are seen in images too", "[verify
          {"glass fp32: cyclic:8 on 7, block fold, launches of 40 tests"}},
         {kTieFault, "image ties", {"ties fp32: blocks on 5, global words, division refined"}},
         {kWalkFault, "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
-        {kWalkFault, "image polygons fp32: torus3d 2x2x2", {"polygons fp32: torus3d 2x2x2"}}};
+        {kWalkFault,
+         "image polygons fp32: torus3d 2x2x2, ",
+         {"polygons fp32: torus3d 2x2x2, launches of 3 units, links by a kernel"}}};
     for (const Row& row : rows) {
         CAPTURE(row.fault.replace, row.only);
         const auto checks = run({row.fault}, row.only);
@@ -145,6 +147,22 @@ TEST_CASE("a wrong border of the filter is seen in its images alone, with the pi
     CHECK(failures(checks) == Names{"glass fp32 filter: cyclic:5 on 10"});
     CHECK(checks.size() > 4);
     CHECK_THAT(first_fault(checks).where, Catch::StartsWith("row 0, column 19"));
+}
+
+TEST_CASE("faults of links by a kernel and of launches that go on are seen on the torus, where there are such",
+          "[verify][faults]") {
+    const Names by_kernel = {"torus3d: exchange of all boxes by a kernel", "torus3d: exchange of few boxes by a kernel",
+                             "torus2d: exchange of all boxes by a kernel",
+                             "torus2d: exchange of few boxes by a kernel"};
+    CHECK(failures(run({kExchangeFault}, "exchange of")) == by_kernel);
+    CHECK(failures(run({emptied("torus/exchange.cl", "exchange")}, "exchange of")) == by_kernel);
+    const Names bounded = {"polygons fp32: torus3d 2x2x2, launches of 3 units, links by a kernel"};
+    for (const SourcePatch& fault : {kExchangeFault, kAgainFault}) {
+        CAPTURE(fault.file);
+        const auto checks = run({fault}, "image polygons fp32: torus3d 2x2x2");
+        CHECK(checks.size() == 2);
+        CHECK(failures(checks) == bounded);
+    }
 }
 
 TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify][faults]") {
