@@ -161,9 +161,12 @@ cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, 
                                            const cl_event* wait_list, cl_event* event) {
     if (goes_wrong("clEnqueueCopyBufferRect", "lost"))
         return command_without_copy(queue, from, waits, wait_list, event);
-    return command<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin,
-                                                      to_origin, region, from_row, from_slice, to_row, to_slice, waits,
-                                                      wait_list, event);
+    size_t origin[] = {to_origin[0], to_origin[1], to_origin[2]};
+    if (goes_wrong("clEnqueueCopyBufferRect", "astray"))
+        origin[0] = next_door(to, origin[0], (region[1] - 1) * to_row + region[0]);
+    return command<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin, origin,
+                                                      region, from_row, from_slice, to_row, to_slice, waits, wait_list,
+                                                      event);
 }
 
 cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* needed) {

@@ -35,8 +35,8 @@ TEST_CASE("copies that are lost are seen by the checks of what copies", "[cli][v
         long rings, transfers, blocks, links;
     };
     for (const Row& row :
-         {Row{"clEnqueueCopyBuffer 2 lost", 3, 1, 0, 0}, Row{"clEnqueueCopyBuffer 40 astray", 1, 1, 0, 0},
-          Row{"clEnqueueCopyBufferRect 1 lost", 0, 0, 1, 4}}) {
+         {Row{"clEnqueueCopyBuffer 2 lost", 3, 0, 0, 0}, Row{"clEnqueueCopyBuffer 40 astray", 1, 0, 0, 0},
+          Row{"clEnqueueCopyBufferRect 1 lost", 3, 1, 1, 4}}) {
         const Outcome run = verify_losing(row.fault, "machine");
         INFO(run.told());
         CHECK(run.code == 4);
@@ -72,11 +72,11 @@ TEST_CASE("a transfer over the bus that goes to the wrong PE is seen in the imag
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "r.json"))["image"]["hash"].get<std::string>();
     };
-    const std::string whole = hash_of("ring", "clEnqueueCopyBuffer 1000000 astray");
+    const std::string whole = hash_of("ring", "clEnqueueCopyBufferRect 1000000 astray");
     for (const std::string way : {"bus", "bus-broadcast"}) {
         CAPTURE(way);
-        CHECK(hash_of(way, "clEnqueueCopyBuffer 1000000 astray") == whole);
-        CHECK(hash_of(way, "clEnqueueCopyBuffer 30 astray") != whole);
+        CHECK(hash_of(way, "clEnqueueCopyBufferRect 1000000 astray") == whole);
+        CHECK(hash_of(way, "clEnqueueCopyBufferRect 30 astray") != whole);
     }
 }
 
