@@ -13,6 +13,7 @@
 #include "host/cli/bench_tune.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
+#include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/scene_input.hpp"
@@ -37,7 +38,7 @@ struct BenchCommand {
     std::vector<std::string> ways;
     std::vector<std::uint32_t> ranks;
     std::uint32_t samples = 7;
-    std::string report, baseline;
+    std::string report, page, baseline;
     double tolerance = 10;  // percent
     bool denormals = false;
     TuneCommand tune;
@@ -101,14 +102,18 @@ BenchReport checked_files(const BenchCommand& command) {
     if (!(command.tolerance >= 0 && command.tolerance <= 100))
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance));
     if (!command.report.empty()) check_writable(command.report);
+    if (!command.page.empty()) check_page_target("--page", command.page);
+    if (!command.page.empty() && command.page == command.report)
+        throw UserError(fmt::format("{}: named by --report and --page: name another file", command.page));
     if (command.baseline.empty()) return {};
     std::error_code error;  // of a file that is not there, and so not the other one
-    const bool reads_stdin = is_standard_stream(command.baseline);
-    if (!command.report.empty() && !reads_stdin && std::filesystem::equivalent(command.report, command.baseline, error))
-        throw UserError(
-            fmt::format("{}: named by --report and --compare; a baseline is not written over by the run "
-                        "that is held against it: name another report",
-                        command.report));
+    for (const std::string& file : {command.report, command.page})
+        if (!file.empty() && !is_standard_stream(command.baseline) &&
+            std::filesystem::equivalent(file, command.baseline, error))
+            throw UserError(fmt::format(
+                "{}: named by {} and --compare; a baseline is not written over by the run "
+                "that is held against it: name another {}",
+                file, file == command.report ? "--report" : "--page", file == command.report ? "report" : "page"));
     return read_bench_report(command.baseline);
 }
 
@@ -122,10 +127,17 @@ void check_comparable(const BenchCommand& command, const BenchReport& baseline, 
         is.array, is.format, is.lanes, is.group_size));
 }
 
-void finish(const BenchCommand& command, const BenchReport& baseline, const BenchReport& now) {
-    if (!command.report.empty()) write_whole_file(command.report, bench_report_text(now));
+void finish(const BenchCommand& command, const BenchReport& baseline, BenchReport now) {
+    BenchComparison result;
+    if (!command.baseline.empty()) {
+        result = compare_bench(baseline, now, command.tolerance);
+        now.compared = {{"baseline", command.baseline}, {"tolerance_percent", command.tolerance},
+                        {"remarks", result.remarks},    {"compared", result.compared},
+                        {"slower", result.slower},      {"other_images", result.other_images},
+                        {"rows", result.rows}};
+    }
+    write_report_and_page({command.report, command.page}, bench_report_text(now));
     if (command.baseline.empty()) return;
-    const BenchComparison result = compare_bench(baseline, now, command.tolerance);
     fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", command.baseline, command.tolerance,
                result.text);
     std::fflush(stdout);
@@ -231,7 +243,8 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     if (settings.antialias.method != AntialiasMethod::kNone)
         throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
     std::optional<ProgressBar> bar(std::in_place, true, "preparing");
-    Session session(choose_device(command.render.device));
+    const cl::Device device = choose_device(command.render.device);
+    Session session(device);
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
     check_comparable(command, baseline, bench_report(rows, session.device()));
     bar->stage("taking samples");
@@ -246,7 +259,12 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     if (command.ways.empty())
         print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
                          command.samples);
-    finish(command, baseline, bench_report(rows, session.device()));
+    BenchReport now = bench_report(rows, session.device());
+    if (!command.page.empty()) {
+        const ProgressBar measuring(true, "measuring the device's peak");
+        add_rooflines(now, rows, device);
+    }
+    finish(command, baseline, std::move(now));
 }
 
 }  // namespace
@@ -283,6 +301,10 @@ void add_bench_command(CLI::App& program) {
     add_value(*command, "--report", options->report,
               "Write the rows, for a later --compare; -: stdout, and the tables on stderr")
         ->type_name("FILE.json");
+    add_value(*command, "--page", options->page,
+              "Write rates, comparison and roofline as a page for a browser; it is what raya page makes of the report. "
+              "Measures the device's peak for each format and width of lanes, some seconds each")
+        ->type_name("FILE.html");
     add_value(*command, "--compare", options->baseline,
               "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
               "image another one")

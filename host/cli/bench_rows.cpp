@@ -3,14 +3,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
+#include "host/kernels/device_peak.hpp"
 #include "host/report/render_report.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
+#include "host/ring/ring_work.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/study/measured.hpp"
 #include "host/torus/torus_plan.hpp"
@@ -41,7 +44,9 @@ BenchMeasurement said_of(const std::string& kernel, const Scene& scene, const Ri
 // What a renderer's first image says, and how to render more of them: `seconds(result)` is what is measured of one.
 template <class Renderer, class Seconds>
 BenchRow row_of(BenchMeasurement said, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
-                const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds) {
+                const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds,
+                std::optional<KernelWork> (*work)(const RingSettings&, const decltype(renderer->render())&) = nullptr,
+                const RingSettings& settings = {}) {
     const auto first = renderer->render();
     said.lanes = first.lanes;
     said.group_size = first.group_size;
@@ -53,11 +58,16 @@ BenchRow row_of(BenchMeasurement said, const NumberFormat& format, std::shared_p
             .events = events(first),
             .build_s = first.build_s,
             .tuned = first.tuned,
-            .image_s = [renderer, seconds] { return seconds(renderer->render()); }};
+            .image_s = [renderer, seconds] { return seconds(renderer->render()); },
+            .work = work != nullptr ? work(settings, first) : std::nullopt};
 }
 
 const EventCounts& events_of_ring(const RingResult& r) { return r.all.events; }
 const EventCounts& events_of_torus(const TorusResult& r) { return r.events; }
+
+std::optional<KernelWork> trace_work(const RingSettings& settings, const RingResult& result) {
+    return ring_kernel_work(settings, result).front();
+}
 
 TorusSettings torus_of(const RingSettings& s) {
     TorusSettings t = usual_torus({s.mapping.width, s.mapping.height});
@@ -75,7 +85,8 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
     settings.format = format;
     settings.kernels.lanes = lanes;
     return row_of(said_of("trace", scene, settings, array_text(settings)), format,
-                  std::make_shared<RingRenderer>(session, scene, settings), events_of_ring, trace_seconds);
+                  std::make_shared<RingRenderer>(session, scene, settings), events_of_ring, trace_seconds, trace_work,
+                  settings);
 }
 
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
@@ -117,6 +128,24 @@ void take_samples(std::vector<BenchRow>& rows, int samples) {
     for (int i = 0; i < samples; ++i)
         for (BenchRow& row : rows) row.seconds.push_back(sample_seconds(row.image_s));
     for (BenchRow& row : rows) std::sort(row.seconds.begin(), row.seconds.end());
+}
+
+void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const cl::Device& device) {
+    std::map<std::pair<std::string, std::uint32_t>, DevicePeak> peaks;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!rows[i].work) continue;
+        BenchMeasurement& said = report.rows[i];
+        try {
+            const auto key = std::pair(said.format, said.lanes);
+            if (!peaks.contains(key)) peaks[key] = device_peak(device, rows[i].format, said.lanes);
+            const LabelSummary best{.label = rows[i].work->label,
+                                    .kind = "kernel",
+                                    .total_ns = static_cast<std::uint64_t>(said.best_s * 1e9)};
+            said.roofline = roofline(peaks[key], {*rows[i].work}, {best});
+        } catch (const DeviceError& error) {  // the rates stand
+            said.roofline.emplace().lacking = error.what();
+        }
+    }
 }
 
 BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct BenchRow {
     std::string tuned{};                // where lanes and group come from (host/kernels/tuned.hpp)
     bool flushed = false;               // its kernel takes denormal numbers for 0, and may so make another image
     std::function<double()> image_s{};  // renders one more image: how long it took
+    std::optional<KernelWork> work{};   // of one image, where the row is one kernel's
     std::vector<double> seconds{};      // of each sample, one image each; sorted in the end
 
     double best() const { return seconds.front(); }
@@ -45,6 +47,10 @@ void check_rows(const std::vector<BenchRow>& rows);
 /// `samples` samples of each row, of 20 ms or more. The rows take turns, so that a disturbance from outside hits all of
 /// them alike.
 void take_samples(std::vector<BenchRow>& rows, int samples);
+
+/// Holds each kernel's best sample against the device's peak, measured now for each format and width of lanes. What the
+/// device cannot measure is said in the row.
+void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const cl::Device& device);
 
 /// The rows as they stand in a report; before take_samples() without times.
 BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device);

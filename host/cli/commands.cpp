@@ -118,6 +118,7 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     add_generate_command(program);
     add_bench_command(program);
     add_study_command(program);
+    add_page_command(program);
     add_verify_command(program);
     add_ping_command(program, ranks);
     add_manual_command(program);

@@ -28,6 +28,7 @@ void add_generate_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_study_command(CLI::App& program);
+void add_page_command(CLI::App& program);
 void add_verify_command(CLI::App& program);
 void add_ping_command(CLI::App& program, Ranks& ranks);
 void add_manual_command(CLI::App& program);

@@ -7,6 +7,7 @@
 
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
+#include "host/cli/page.hpp"
 #include "host/cli/quoted.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/scene_input.hpp"
@@ -32,10 +33,7 @@ struct ExploreCommand {
 
 void check_page(const ExploreCommand& command) {
     const std::string& page = command.page;
-    const bool named = page.ends_with(".html") || page.ends_with(".htm");
-    if (!named && !page.starts_with("/dev/") && !is_standard_stream(page))
-        throw UserError(fmt::format("-o {}: what is written is a page for a browser; let the name end in .html", page));
-    check_writable(page);
+    check_page_target("-o", page);
     if (is_standard_stream(command.render.scene) || is_standard_stream(page)) return;
     std::error_code error;
     if (std::filesystem::canonical(command.render.scene, error) == written_file(page) && !error)

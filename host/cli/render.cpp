@@ -43,6 +43,12 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
         ->type_name("IMAGE");
     add_value(*command, "--report", options->report, "Write everything that was counted and measured; -: stdout")
         ->type_name("FILE.json");
+    add_value(
+        *command, "--page", options->page,
+        "Write the render as a page for a browser: picture, owners of pixels, loads, times by label, roofline, "
+        "model beside measurement, build options; it is what raya page makes of the report. Measures the device's "
+        "peak, as --profile does")
+        ->type_name("FILE.html");
     command->add_flag("--profile", options->profile,
                       "Print launches and times of every labelled command, the builds, and how near each kernel came "
                       "to the device's measured peak (the roofline)");

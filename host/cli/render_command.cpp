@@ -6,9 +6,12 @@
 #include <set>
 
 #include "host/cl/device.hpp"
+#include "host/cli/page.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/image/plain_png.hpp"
+#include "host/image/preview.hpp"
 #include "host/kernels/device_peak.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/report/profile_table.hpp"
@@ -26,7 +29,7 @@ void check_distinct(const std::string& scene, const std::vector<std::string>& ou
         if (is_standard_stream(file))
             throw UserError("- is given twice: only one file can go to stdout; name files for the others");
         throw UserError(fmt::format(
-            "{}: named twice; scene, image, cost image, mask, report, packets and trace must be different files",
+            "{}: named twice; scene, image, cost image, mask, report, page, packets and trace must be different files",
             file));
     }
 }
@@ -58,8 +61,9 @@ void check_targets(const RenderCommand& command) {
     tone_of(command.tone, command.image);
     if (!packets.empty()) check_packets(packets);
     if (!command.torus.replay.empty()) check_replay(command.torus);
-    check_distinct(command.render.scene,
-                   {command.image, command.cost, command.mask, command.report, packets, command.trace.file});
+    check_distinct(command.render.scene, {command.image, command.cost, command.mask, command.report, command.page,
+                                          packets, command.trace.file});
+    if (!command.page.empty()) check_page_target("--page", command.page);
     // Drivers first: the first TBB that is loaded serves all, and Intel's runtime wants a newer one than OpenImageIO's.
     all_devices();
     check_writable_target(command.image, kImageExtensions);
@@ -108,6 +112,12 @@ void add_profile(RenderReport& report, RenderWatch& watch, const cl::Device& dev
     }
 }
 
+void add_preview(RenderReport& report, const RenderCommand& command, const Image& image) {
+    const Tone tone = tone_of(command.tone, command.image);
+    const Image small = preview_of(tone == Tone{} ? image : as_shown(image, tone));
+    report.image.preview = {small.width, small.height, plain_png(small)};
+}
+
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene) {
     ImageAttributes attributes = {{"scene", scene},
                                   {"machine", report.machine.name},
@@ -131,7 +141,7 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 }
 
 void write_report(const RenderCommand& command, const RenderReport& report) {
-    if (!command.report.empty()) write_whole_file(command.report, to_json(report).dump(2) + "\n");
+    if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report).dump(2) + "\n");
     if (!command.quiet) fmt::print("{}", human_summary(report));
     if (!command.profile) return;
     const auto& measured = report.measured;

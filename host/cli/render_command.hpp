@@ -13,19 +13,24 @@
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/view_json.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 
 struct RenderCommand {
     RenderOptions render;
     TorusOptions torus;
-    std::string image, cost, mask, report;
+    std::string image, cost, mask, report, page;
     ToneOptions tone;
     TraceOptions trace;
     bool profile = false, quiet = false;
 
     /// Commands are timed where somebody will read the times: a GPU's queue is faster without.
-    Timing timing() const { return profile || !report.empty() || !trace.file.empty() ? Timing::kOn : Timing::kOff; }
+    Timing timing() const { return profile || reports() || !trace.file.empty() ? Timing::kOn : Timing::kOff; }
+    /// A page is made of the report.
+    bool reports() const { return !report.empty() || !page.empty(); }
+    /// Whether kernels are held against the device's peak.
+    bool roofline() const { return profile || !page.empty(); }
 };
 
 /// Renders on a ring machine, on the torus machine, and writes what was asked for: in rank 0, where there are several.
@@ -42,18 +47,23 @@ void check_targets(const RenderCommand& command);
 /// How the picture's codes are made; empty of a picture without.
 std::optional<ImageCodes> codes_of(const RenderCommand& command);
 
+/// A small picture for the report's page, in the picture's tone.
+void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
+
 /// What any machine's result tells: scene, view, image, device, times. The rest is the caller's.
 template <class Result>
 RenderReport begin_report(const RenderCommand& command, const SceneInput& input, const DeviceInfo& device,
                           const Result& result) {
     RenderReport report;
+    report.raya = raya_version();
     report.scene = input_name(command.render.scene);
     report.view = view_json(input.scene);
     report.skipped = input.remarks;
     report.image = {result.image.width, result.image.height, output_name(command.image), pixel_hash(result.image),
                     codes_of(command)};
-    report.device = {device.name,  device.platform,   device.version, result.build_options,
-                     result.lanes, result.group_size, result.tuned};
+    if (command.reports()) add_preview(report, command, result.image);
+    report.device = {device.name,          device.platform, device.version,    device.driver,
+                     result.build_options, result.lanes,    result.group_size, result.tuned};
     report.measured = {result.build_s, result.render_s, result.commands, {}, {}};
     return report;
 }
@@ -68,7 +78,7 @@ ImageAttributes image_attributes(const RenderReport& report, const std::string& 
 /// Writes the image with that, and with how its codes were made.
 void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes);
 
-/// The report's file, the summary and the profile, as far as they were asked for.
+/// The report's file, its page, the summary and the profile, as far as they were asked for.
 void write_report(const RenderCommand& command, const RenderReport& report);
 
 }  // namespace raya

@@ -84,7 +84,7 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 }  // namespace
 
 void render_on_ring(const RenderCommand& command, Ranks& ranks) {
-    RenderWatch watch(command.trace, command.profile);
+    RenderWatch watch(command.trace, command.roofline());
     std::optional<ProgressBar> bar(std::in_place, !command.quiet && ranks.first(), "reading the scene");
     RenderOptions options = command.render;
     SceneInput input = read_scene_once(watch, options, ranks);
@@ -111,7 +111,7 @@ void render_on_ring(const RenderCommand& command, Ranks& ranks) {
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
     watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
-    if (command.profile) {
+    if (command.roofline()) {
         bar->stage("measuring the device's peak");
         add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result), input.warnings);
     }

@@ -85,6 +85,11 @@ TorusReport torus_report(const TorusSettings& settings, const TorusResult& resul
     t.link.count = std::uint64_t{raya_nodes(settings.torus)} * links_of_node(settings.torus);
     t.link.max_bytes = kWordBytes * *std::max_element(words.begin(), words.end());
     t.link.total_bytes = kWordBytes * std::accumulate(words.begin(), words.end(), std::uint64_t{0});
+    t.link.sent.assign(words.size() / RAYA_LINKS, 0);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        t.link.by_direction[i % RAYA_LINKS] += kWordBytes * words[i];
+        t.link.sent[i / RAYA_LINKS] += kWordBytes * words[i];
+    }
     t.queue = result.buffers.queue;
     t.box = result.buffers.box;
     t.queue_max = result.queue_max;
@@ -139,7 +144,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
 }  // namespace
 
 void render_on_torus(const RenderCommand& command, Ranks& ranks) {
-    RenderWatch watch(command.trace, command.profile);
+    RenderWatch watch(command.trace, command.roofline());
     std::optional<ProgressBar> bar(std::in_place, !command.quiet && ranks.first(), "reading the scene");
     RenderOptions options = command.render;
     SceneInput input = read_scene_once(watch, options, ranks);
@@ -167,7 +172,7 @@ void render_on_torus(const RenderCommand& command, Ranks& ranks) {
         add_asynchronous_time(*report.torus, command, settings, makes.history->finish(), watch.steps());
     }
     write_images(command, result, report, scene, makes, watch.steps());
-    if (command.profile) {
+    if (command.roofline()) {
         bar->stage("measuring the device's peak");
         add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result), input.warnings);
     }

@@ -9,6 +9,7 @@
 
 #include "host/cli/commands.hpp"
 #include "host/cli/options.hpp"
+#include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
@@ -22,7 +23,7 @@ namespace raya {
 namespace {
 
 struct VerifyCommand {
-    std::string device, report, kernel_dir, only;
+    std::string device, report, page, kernel_dir, only;
     std::uint32_t lanes = 0;
     bool brief = false, quick = false, full = false;
     int lines = -1;  // a pipe, in the process that runs the checks (verify/worker.hpp)
@@ -91,7 +92,10 @@ Json report_of(const std::vector<DeviceChecks>& all, Depth depth) {
                            {"seconds", one.seconds},
                            {"checks", checks}});
     }
-    return {{"program", name_and_version()}, {"depth", depth_name(depth)}, {"devices", devices}};
+    return {{"kind", kVerifyReportKind},
+            {"program", name_and_version()},
+            {"depth", depth_name(depth)},
+            {"devices", devices}};
 }
 
 void print_overall(const std::vector<DeviceChecks>& all) {
@@ -107,6 +111,9 @@ void print_overall(const std::vector<DeviceChecks>& all) {
 void run_verify(const VerifyCommand& command) {
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.report.empty()) check_writable(command.report);
+    if (!command.page.empty()) check_page_target("--page", command.page);
+    if (!command.page.empty() && command.page == command.report)
+        throw UserError(fmt::format("{}: named by --report and --page: name another file", command.page));
     const VerifySettings settings{.depth = command.depth(),
                                   .sources = {command.kernel_dir},
                                   .only = command.only,
@@ -120,7 +127,7 @@ void run_verify(const VerifyCommand& command) {
         right = right && all.back().is_right();
     }
     if (all.size() > 1) print_overall(all);
-    if (!command.report.empty()) write_whole_file(command.report, report_of(all, command.depth()).dump(2) + "\n");
+    write_report_and_page({command.report, command.page}, report_of(all, command.depth()).dump(2) + "\n");
     if (!right) throw CheckFailure{};
 }
 
@@ -146,6 +153,10 @@ void add_verify_command(CLI::App& program) {
     add_value(*command, "--report", options->report,
               "Write every check, with what is wrong, as JSON; -: stdout, and the lines on stderr")
         ->type_name("FILE.json");
+    add_value(*command, "--page", options->page,
+              "Write every check, and the first that failed in full, as a page for a browser; it is what raya page "
+              "makes of the report")
+        ->type_name("FILE.html");
     add_value(*command, "--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
         ->type_name("DIR");
     add_value(*command, "--lanes", options->lanes,

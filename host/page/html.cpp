@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "host/files/base64.hpp"
 #include "host/report/text_tables.hpp"
 
 namespace raya {
 namespace {
 
+const std::string kNarrowSpace = "\u202f";
 constexpr std::size_t kOpenRows = 24, kMostRows = 400;
 
-// "35", "35 ms", "35 ± 5", "inf", "-": what a column of numbers has.
-bool is_number(const std::string& html) {
-    if (html == "-" || html.empty()) return true;
+// "35", "35 ms", "35 ± 5", "inf", "-", "12 345" with a narrow space: what a column of numbers has.
+bool is_number(const std::string& cell) {
+    if (cell == "-" || cell.empty()) return true;
+    const std::string html = replaced(cell, kNarrowSpace, "");
     char* end = nullptr;
     std::strtod(html.c_str(), &end);
     return end != html.c_str() && (*end == '\0' || *end == ' ');
@@ -118,7 +119,7 @@ std::string html_picture(const HtmlPicture& picture) {
     return fmt::format(
         "<figure>\n<img class=\"picture\" alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
         "<figcaption>{}</figcaption>\n</figure>\n",
-        html_text(picture.words), base64(picture.png), html_prose(picture.title));
+        html_text(picture.words), html_text(picture.base64_png), html_prose(picture.title));
 }
 
 }  // namespace raya

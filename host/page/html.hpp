@@ -40,9 +40,9 @@ std::string html_cut_table(const HtmlTable& table, const std::string& rest);
 std::string html_folded_table(const HtmlTable& table, const std::string& rest);
 
 struct HtmlPicture {
-    std::string title;  // a line
-    std::string words;  // what is seen, for those who do not see it
-    std::string png;    // the file's bytes
+    std::string title;       // a line
+    std::string words;       // what is seen, for those who do not see it
+    std::string base64_png;  // the file
 };
 
 /// The picture itself within the page, as a figure.

@@ -57,8 +57,30 @@ std::string verdict(BenchComparison& sum, const BenchMeasurement& before, const 
 }
 
 /// The two sides' words for the same thing, where they differ.
-std::string difference(const char* what, const std::string& before, const std::string& now) {
-    return before == now ? "" : fmt::format("warning: another {}: {}, the baseline's is {}\n", what, now, before);
+void add_difference(BenchComparison& sum, const char* what, const std::string& before, const std::string& now) {
+    if (before == now) return;
+    sum.remarks.push_back(fmt::format("another {}: {}, the baseline's is {}", what, now, before));
+    sum.text += "warning: " + sum.remarks.back() + "\n";
+}
+
+Json rates_json(const BenchMeasurement* row) {
+    if (row == nullptr) return {};
+    return {{"best", row->best_rate()}, {"median", row->median_rate()}};
+}
+
+/// Of either side, a null pointer where it lacks the row.
+Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& said) {
+    const BenchMeasurement& row = now != nullptr ? *now : *before;
+    return {{"kernel", row.kernel},
+            {"scene", row.scene},
+            {"size", row.size},
+            {"array", row.array},
+            {"format", row.format},
+            {"lanes", row.lanes},
+            {"group", row.group_size},
+            {"mrays_per_s", rates_json(now)},
+            {"mrays_per_s_was", rates_json(before)},
+            {"verdict", said}};
 }
 
 }  // namespace
@@ -70,28 +92,31 @@ int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
 
 BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance) {
     BenchComparison sum;
-    sum.text = difference("device", baseline.platform + " " + baseline.device, now.platform + " " + now.device) +
-               difference("driver", baseline.version + ", " + baseline.driver, now.version + ", " + now.driver) +
-               difference("version of raya", baseline.raya, now.raya);
+    add_difference(sum, "device", baseline.platform + " " + baseline.device, now.platform + " " + now.device);
+    add_difference(sum, "driver", baseline.version + ", " + baseline.driver, now.version + ", " + now.driver);
+    add_difference(sum, "version of raya", baseline.raya, now.raya);
     std::vector<std::vector<std::string>> table = {{"kernel", "scene", "size", "format", "lanes", "group",
                                                     "best Mrays/s", "was", "change", "median", "was", "change", ""}};
     for (const BenchMeasurement& row : now.rows) {
         const BenchMeasurement* before = find_row(baseline.rows, row);
+        const std::string said = before == nullptr ? "not in the baseline" : verdict(sum, *before, row, tolerance);
+        sum.rows.push_back(row_json(before, &row, said));
         if (before == nullptr) {
-            table.push_back(joined(named(row), {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-",
-                                                "not in the baseline"}));
+            table.push_back(
+                joined(named(row), {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-", said}));
             continue;
         }
-        table.push_back(joined(
-            named(row),
-            {rate(row.best_rate()), rate(before->best_rate()), percent(change(before->best_rate(), row.best_rate())),
-             rate(row.median_rate()), rate(before->median_rate()),
-             percent(change(before->median_rate(), row.median_rate())), verdict(sum, *before, row, tolerance)}));
+        table.push_back(joined(named(row), {rate(row.best_rate()), rate(before->best_rate()),
+                                            percent(change(before->best_rate(), row.best_rate())),
+                                            rate(row.median_rate()), rate(before->median_rate()),
+                                            percent(change(before->median_rate(), row.median_rate())), said}));
     }
-    for (const BenchMeasurement& row : baseline.rows)
-        if (find_row(now.rows, row) == nullptr)
-            table.push_back(joined(named(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-",
-                                                "in the baseline alone"}));
+    for (const BenchMeasurement& row : baseline.rows) {
+        if (find_row(now.rows, row) != nullptr) continue;
+        const std::string said = "in the baseline alone";
+        sum.rows.push_back(row_json(&row, nullptr, said));
+        table.push_back(joined(named(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", said}));
+    }
     sum.text += text_table(table);
     return sum;
 }

@@ -1,16 +1,19 @@
 // Two runs of `raya bench`, row against row: what became slower, faster, or another image.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "host/report/bench_report.hpp"
 
 namespace raya {
 
 struct BenchComparison {
-    std::string text;      // warnings, and a table with a line for each row of either side
-    int compared = 0;      // rows that both sides have
-    int slower = 0;        // of these, past the tolerance
-    int other_images = 0;  // of these, with another hash
+    std::string text;                    // warnings, and a table with a line for each row of either side
+    int compared = 0;                    // rows that both sides have
+    int slower = 0;                      // of these, past the tolerance
+    int other_images = 0;                // of these, with another hash
+    Json rows = Json::list();            // of either side: what was measured, rates now and before, the verdict
+    std::vector<std::string> remarks{};  // another device, driver, version
     bool failed() const { return slower + other_images > 0; }
 };
 

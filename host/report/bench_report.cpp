@@ -14,27 +14,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kKind = "raya bench";
-
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
     throw UserError(fmt::format("{}: {}; remedy: make a baseline with: raya bench --report {}", input_name(path),
                                 reason, path.string()));
 }
 
 Json row_json(const BenchMeasurement& row) {
-    return {{"kernel", row.kernel},
-            {"scene", row.scene},
-            {"size", row.size},
-            {"array", row.array},
-            {"format", row.format},
-            {"lanes", row.lanes},
-            {"group", row.group_size},
-            {"rays", row.rays},
-            {"mrays_per_s", {{"best", row.best_rate()}, {"median", row.median_rate()}}},
-            {"ms", {{"best", 1e3 * row.best_s}, {"median", 1e3 * row.median_s}}},
-            {"samples", row.samples},
-            {"hash", row.hash},
-            {"build_options", row.build_options}};
+    Json json = {{"kernel", row.kernel},
+                 {"scene", row.scene},
+                 {"size", row.size},
+                 {"array", row.array},
+                 {"format", row.format},
+                 {"lanes", row.lanes},
+                 {"group", row.group_size},
+                 {"rays", row.rays},
+                 {"mrays_per_s", {{"best", row.best_rate()}, {"median", row.median_rate()}}},
+                 {"ms", {{"best", 1e3 * row.best_s}, {"median", 1e3 * row.median_s}}},
+                 {"samples", row.samples},
+                 {"hash", row.hash},
+                 {"build_options", row.build_options}};
+    if (!row.roofline) return json;
+    if (!row.roofline->lacking.empty()) json["no_roofline"] = row.roofline->lacking;
+    if (row.roofline->rows.empty()) return json;
+    json["peak"] = peak_json(row.roofline->peak);
+    json["roofline"] = roofline_json(*row.roofline).elements().front();
+    return json;
 }
 
 BenchMeasurement row_of(const Json& json) {
@@ -82,14 +86,15 @@ bool can_be_a_time(double seconds) { return std::isfinite(seconds) && seconds > 
 std::string bench_report_text(const BenchReport& report) {
     Json rows = Json::list();
     for (const BenchMeasurement& row : report.rows) rows.push_back(row_json(row));
-    const Json json = {{"kind", kKind},
-                       {"raya", report.raya},
-                       {"device",
-                        {{"name", report.device},
-                         {"platform", report.platform},
-                         {"version", report.version},
-                         {"driver", report.driver}}},
-                       {"rows", rows}};
+    Json json = {{"kind", kBenchReportKind},
+                 {"raya", report.raya},
+                 {"device",
+                  {{"name", report.device},
+                   {"platform", report.platform},
+                   {"version", report.version},
+                   {"driver", report.driver}}},
+                 {"rows", rows}};
+    if (!report.compared.is_null()) json["compared"] = report.compared;
     return json.dump(2) + "\n";
 }
 
@@ -98,7 +103,7 @@ BenchReport read_bench_report(const fs::path& path) {
     try {
         const Json json = Json::parse(contents(path));
         const Json* kind = json.find("kind");
-        if (kind == nullptr || !kind->is_text() || kind->text() != kKind)
+        if (kind == nullptr || !kind->is_text() || kind->text() != kBenchReportKind)
             refuse(path, "it is JSON, but no report of raya bench");
         report = report_of(json);
     } catch (const JsonSyntaxError& error) {

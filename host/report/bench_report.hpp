@@ -2,8 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "host/files/json.hpp"
+#include "host/report/roofline.hpp"
 
 namespace raya {
 
@@ -19,6 +23,7 @@ struct BenchMeasurement {
     double best_s = 0, median_s = 0;  // of one image, > 0: the kernel's on the device, or a whole render's on the host
     int samples = 0;                  // of which these are the best and the median
     std::string hash, build_options = {};  // of the image; as the compiler saw them
+    std::optional<Roofline> roofline{};    // of one row, the best sample's; where the device's peak was measured
 
     double best_rate() const { return static_cast<double>(rays) / best_s * 1e-6; }  // Mrays/s
     double median_rate() const { return static_cast<double>(rays) / median_s * 1e-6; }
@@ -28,13 +33,17 @@ struct BenchReport {
     std::string raya;  // version
     std::string device, platform, version, driver;
     std::vector<BenchMeasurement> rows;
+    Json compared{};  // compare_bench()'s, with the baseline's name; null: held against none
 };
 
-/// The report as JSON text, with `"kind": "raya bench"` first, by which it is known again.
+/// By which a report is known again: its member "kind".
+inline constexpr const char* kBenchReportKind = "raya bench";
+
+/// The report as JSON text, its kind first.
 std::string bench_report_text(const BenchReport& report);
 
-/// Reads what bench_report_text() wrote. Throws UserError with file, reason and remedy for a file that cannot be read,
-/// is no such report, or holds a row that cannot be one.
+/// Reads what bench_report_text() wrote, but for rooflines and comparison. Throws UserError with file, reason and
+/// remedy for a file that cannot be read, is no such report, or holds a row that cannot be one.
 BenchReport read_bench_report(const std::filesystem::path& path);
 
 }  // namespace raya

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "host/files/base64.hpp"
 #include "host/files/json.hpp"
 #include "host/machine/budget.hpp"
 #include "host/machine/unit_text.hpp"
@@ -23,6 +24,18 @@ Json skipped_json(const std::vector<NffRemark>& skipped) {
 Json codes_json(const std::optional<ImageCodes>& codes) {
     if (!codes) return {};
     return {{"exposure", codes->exposure}, {"tone", codes->tone}, {"gamma", codes->gamma}};
+}
+
+Json image_json(const RenderReport& r) {
+    Json json = {{"width", r.image.width},
+                 {"height", r.image.height},
+                 {"file", r.image.file},
+                 {"hash", r.image.hash},
+                 {"codes", codes_json(r.image.codes)}};
+    const auto& preview = r.image.preview;
+    if (!preview.png.empty())
+        json["preview"] = {{"width", preview.width}, {"height", preview.height}, {"png", base64(preview.png)}};
+    return json;
 }
 
 Json load_json(const Load& load) {
@@ -154,23 +167,17 @@ std::uint64_t test_count(const EventCounts& e) {
 Json to_json(const RenderReport& r) {
     const EventCounts& e = r.events;
     Json json;
+    json["kind"] = kRenderReportKind;
+    json["raya"] = r.raya;
     json["scene"] = r.scene;
     json["warnings"] = r.warnings;
     json["skipped"] = skipped_json(r.skipped);
-    json["view"] = r.view;
-    json["image"] = {{"width", r.image.width},
-                     {"height", r.image.height},
-                     {"file", r.image.file},
-                     {"hash", r.image.hash},
-                     {"codes", codes_json(r.image.codes)}};
+    json["image"] = image_json(r);
     json["machine"] = machine_json(r);
-    json["device"] = {{"name", r.device.name},
-                      {"platform", r.device.platform},
-                      {"version", r.device.version},
-                      {"lanes", r.device.lanes},
-                      {"group_size", r.device.group_size},
-                      {"tuned", r.device.tuned},
-                      {"build_options", r.device.build_options}};
+    json["device"] = {{"name", r.device.name},       {"platform", r.device.platform},
+                      {"version", r.device.version}, {"driver", r.device.driver},
+                      {"lanes", r.device.lanes},     {"group_size", r.device.group_size},
+                      {"tuned", r.device.tuned},     {"build_options", r.device.build_options}};
     json["rays"] = {{"primary", e[RAYA_PRIMARY]},     {"primary_hits", e[RAYA_PRIMARY_HITS]},
                     {"reflected", e[RAYA_REFLECTED]}, {"refracted", e[RAYA_REFRACTED]},
                     {"shadow", e[RAYA_SHADOW]},       {"shadow_hits", e[RAYA_SHADOW_HITS]}};

@@ -44,6 +44,7 @@ struct ProgramBuild {
 };
 
 struct RenderReport {
+    std::string raya;  // version
     std::string scene;
     std::vector<std::string> warnings;  // what was said on stderr
     std::vector<NffRemark> skipped;     // what the scene's file has and the scene has not
@@ -54,6 +55,10 @@ struct RenderReport {
         int width = 0, height = 0;  // pixels
         std::string file, hash;     // hash of the linear pixel values: equal for equal pixels
         std::optional<ImageCodes> codes{};
+        struct {
+            int width = 0, height = 0;  // pixels
+            std::string png;            // the file's bytes; empty: none was made
+        } preview{};                    // for the page of the report (host/image/preview.hpp)
     } image;
 
     struct {
@@ -70,7 +75,7 @@ struct RenderReport {
     } machine;
 
     struct {
-        std::string name, platform, version, build_options;
+        std::string name, platform, version, driver, build_options;
         std::uint32_t lanes = 0, group_size = 0;
         std::string tuned;  // where lanes, group and what goes with them come from: "defaults", "options", "FILE, DATE"
     } device;
@@ -94,6 +99,9 @@ struct RenderReport {
         std::optional<Roofline> roofline{};
     } measured;
 };
+
+/// By which a report of a render is known again: its member "kind".
+inline constexpr const char* kRenderReportKind = "raya render";
 
 /// Rays of all kinds.
 std::uint64_t ray_count(const EventCounts& events);

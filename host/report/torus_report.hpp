@@ -3,12 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "host/files/json.hpp"
 #include "host/machine/machine.hpp"
 #include "host/machine/t805.hpp"
 #include "host/machine/time_model.hpp"
 #include "kernels/shared/packet.h"
+#include "kernels/shared/torus.h"
 
 namespace raya {
 
@@ -30,6 +32,8 @@ struct TorusReport {
         std::uint64_t count = 0;      // that lead to another node, of all nodes; each is one way
         std::uint64_t max_bytes = 0;  // over the busiest of them
         std::uint64_t total_bytes = 0;
+        std::array<std::uint64_t, RAYA_LINKS> by_direction{};  // +x, -x, +y, ... of the torus, of all nodes
+        std::vector<std::uint64_t> sent;                       // bytes by each node
         double mean_bytes() const {
             return count > 0 ? static_cast<double>(total_bytes) / static_cast<double>(count) : 0;
         }

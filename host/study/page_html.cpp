@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "host/files/base64.hpp"
 #include "host/page/html.hpp"
 #include "host/study/html_figure.hpp"
 #include "host/study/page_text.hpp"
@@ -28,7 +29,7 @@ std::string table_html(const StudyTable& table) {
 }
 
 std::string picture_html(const StudyPicture& picture) {
-    return html_picture({picture.title, picture.words, picture.png});
+    return html_picture({picture.title, picture.words, base64(picture.png)});
 }
 
 std::string figures_html(const StudyPage& page, const PageFiles& files) {

@@ -17,6 +17,9 @@ enum class Depth {
     kFull    // every format, lanes and group size: minutes
 };
 
+/// By which a report is known again: its member "kind".
+inline constexpr const char* kVerifyReportKind = "raya verify";
+
 /// "quick"
 const char* depth_name(Depth depth);
 

@@ -35,7 +35,9 @@ inline std::set<std::string> load_keys(const std::string& path) {
 
 /// The keys of every report, as keys_of() gives them; `shading` is beyond those that were promised.
 inline std::set<std::string> fixed_keys() {
-    std::set<std::string> keys = {"scene string",
+    std::set<std::string> keys = {"kind string",
+                                  "raya string",
+                                  "scene string",
                                   "image.width count",
                                   "image.height count",
                                   "image.file string",
@@ -48,6 +50,9 @@ inline std::set<std::string> fixed_keys() {
                                   "view.background[] number",
                                   "view.lights[].position[] number",
                                   "view.lights[].colour[] number",
+                                  "image.preview.width count",
+                                  "image.preview.height count",
+                                  "image.preview.png string",
                                   "machine.name string",
                                   "machine.topology string",
                                   "machine.pes count",
@@ -62,6 +67,7 @@ inline std::set<std::string> fixed_keys() {
                                   "device.name string",
                                   "device.platform string",
                                   "device.version string",
+                                  "device.driver string",
                                   "device.lanes count",
                                   "device.group_size count",
                                   "device.tuned string",

@@ -34,7 +34,7 @@ RenderReport report_with_figures() {
     t.live_max = 900;
     for (std::uint32_t kind = 1; kind < RAYA_KINDS; ++kind) t.made[kind] = t.ended[kind] = 10 * kind;
     t.hops = 400;
-    t.link = {256, 3 << 20, 128 << 20};
+    t.link = {256, 3 << 20, 128 << 20, {1, 2, 3, 4, 5, 6}, {9, 12}};
     t.queue = 2048;
     t.queue_max = 77;
     t.box = 512;
@@ -61,7 +61,8 @@ TEST_CASE("a torus reports its own figures and none of a ring", "[report]") {
         "refracted": {"made": 30, "ended": 30}, "shadow": {"made": 40, "ended": 40}, "return": {"made": 50, "ended": 50}})"));
     CHECK(torus["hops"] == 400);
     CHECK(torus["bytes_per_link"] ==
-          Document::parse(R"({"links": 256, "max": 3145728, "mean": 524288.0, "total": 134217728})"));
+          Document::parse(R"({"links": 256, "max": 3145728, "mean": 524288.0, "total": 134217728,
+        "by_direction": [1, 2, 3, 4, 5, 6], "sent_by_node": [9, 12]})"));
     CHECK(torus["queue"] == 2048);
     CHECK(torus["queue_max"] == 77);
     CHECK(torus["box"] == 512);

@@ -5,7 +5,7 @@
 function sortKey(row, column, numeric) {
   const text = row.cells[column].textContent.trim();
   if (!numeric) return text;
-  const number = text.startsWith("inf") ? Infinity : text.startsWith("-inf") ? -Infinity : parseFloat(text);
+  const number = text.startsWith("inf") ? Infinity : text.startsWith("-inf") ? -Infinity : parseFloat(text.replaceAll("\u202f", ""));
   return Number.isNaN(number) ? null : number;
 }
 

@@ -1,0 +1,129 @@
+// raya page REPORT.json -o FILE.html: a saved report as a page.
+#include "host/cli/page.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/options.hpp"
+#include "host/cli/parse.hpp"
+#include "host/cli/parse_mapping.hpp"
+#include "host/error.hpp"
+#include "host/files/read_file.hpp"
+#include "host/files/standard_streams.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/page/html_document.hpp"
+#include "host/report/bench_report.hpp"
+#include "host/report/render_report.hpp"
+#include "host/report_page/report_page.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/verify/verify.hpp"
+
+namespace raya {
+namespace {
+
+struct PageCommand {
+    std::string report, page;
+    bool quiet = false;
+};
+
+// Of a ring whose pixels a rule divides.
+std::optional<raya_mapping> mapping_of(const Json& report) {
+    const Json &machine = report.at("machine"), &image = report.at("image");
+    const std::string& text = machine.at("mapping").text();
+    if (report.find("torus") != nullptr || is_dynamic(text)) return {};
+    const auto side = [&](const char* key) { return static_cast<std::uint32_t>(image.at(key).whole(kLargestSide)); };
+    MappingRule rule = parse_mapping(text).rule;
+    if (rule.has_slots())
+        rule = cyclic_mapping(static_cast<std::uint32_t>(machine.at("offset").whole(kLargestSide)),
+                              parse_fold(machine.at("fold").text()));
+    return make_mapping(rule, {side("width"), side("height")},
+                        static_cast<std::uint32_t>(machine.at("pes").whole(UINT32_MAX)));
+}
+
+std::string page_of(const Json& report) {
+    const Json* const kind = report.find("kind");
+    const std::string name = kind != nullptr && kind->is_text() ? kind->text() : "";
+    if (name == kRenderReportKind) return render_page(report, mapping_of(report));
+    if (name == kBenchReportKind) return bench_page(report);
+    if (name == kVerifyReportKind) return verify_page(report);
+    if (kind == nullptr && (report.find("measured") != nullptr || report.find("devices") != nullptr))
+        throw JsonError("it does not say of which command it is: an older raya wrote it");
+    throw JsonError("it is JSON, but no report of raya render, bench or verify");
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& reason) {
+    throw UserError(
+        fmt::format("{}: {}; remedy: a report that this raya writes by raya render, bench or verify with "
+                    "--report FILE.json",
+                    name, reason));
+}
+
+void make_page(const PageCommand& command) {
+    check_page_target("-o", command.page);
+    std::error_code error;
+    if (std::filesystem::equivalent(command.report, command.page, error))
+        throw UserError(fmt::format("-o {}: that is the report; name another file", command.page));
+    std::string report;
+    try {
+        report = read_file(command.report, Pipes::kRead);
+    } catch (const UnreadableFile& problem) {
+        throw UserError(fmt::format("{}: cannot be read: {}", command.report, problem.what()));
+    }
+    const std::string page = page_of_report(report, command.report);
+    write_whole_file(command.page, page);
+    if (!command.quiet)
+        fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", command.page,
+                   static_cast<double>(page.size()) / 1e3);
+}
+
+}  // namespace
+
+void check_page_target(const std::string& option, const std::string& file) {
+    if (!file.ends_with(".html") && !file.ends_with(".htm") && !file.starts_with("/dev/") && !is_standard_stream(file))
+        throw UserError(
+            fmt::format("{} {}: what is written is a page for a browser; let the name end in .html", option, file));
+    check_writable(file);
+}
+
+std::string page_of_report(const std::string& report, const std::string& name) {
+    std::string page;
+    try {
+        page = page_of(Json::parse(report));
+    } catch (const JsonSyntaxError& problem) {
+        refuse(name, fmt::format("it is no JSON (at byte {})", problem.byte));
+    } catch (const JsonError& problem) {
+        refuse(name, fmt::format("no page can be made of it: {}", problem.what()));
+    } catch (const UserError& problem) {  // of a mapping or nodes that cannot be
+        refuse(name, fmt::format("no page can be made of it: {}", problem.what()));
+    }
+    if (page.size() <= kLargestPage) return page;
+    throw UserError(fmt::format("{}: its page would have {} bytes, {} at most so that it can be sent", name,
+                                page.size(), kLargestPage));
+}
+
+void write_report_and_page(const ReportFiles& files, const std::string& report) {
+    if (!files.report.empty()) write_whole_file(files.report, report);
+    if (!files.page.empty())
+        write_whole_file(files.page, page_of_report(report, files.report.empty() ? "the report" : files.report));
+}
+
+void add_page_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand(
+        "page", "Make a page for a browser of a saved report of render, bench or verify; nothing runs again");
+    const auto options = std::make_shared<PageCommand>();
+    add_value(*command, "REPORT", options->report, "Report of raya render, bench or verify, as --report writes it")
+        ->required()
+        ->type_name("REPORT.json");
+    add_value(*command, "-o,--output", options->page,
+              "Page to write: one file for a browser, below 1 MB, that needs no network and no scripts")
+        ->required()
+        ->type_name("FILE.html");
+    command->add_flag("--quiet", options->quiet, "Print no summary");
+    command->callback([options] { make_page(*options); });
+}
+
+}  // namespace raya

@@ -1,0 +1,18 @@
+// A small picture of a picture, for reports and pages.
+#pragma once
+#include "host/image/image.hpp"
+#include "host/image/tone.hpp"
+
+namespace raya {
+
+inline constexpr int kPreviewSide = 256;  // pixels
+
+/// At most `side` pixels a side, in the same proportions: each the mean of the pixels that it stands for, in linear
+/// light, of colours clamped to 0..1 as an 8-bit file shows them (NaN: 0). A picture that is small enough stays as it
+/// is, but for that. std::logic_error without pixels.
+Image preview_of(const Image& image, int side = kPreviewSide);
+
+/// Linear light as a screen shows it whose picture has the codes that this tone makes.
+Image as_shown(const Image& image, const Tone& tone);
+
+}  // namespace raya

@@ -1,0 +1,78 @@
+// Small pictures of pictures: their sides, and that each pixel is the mean of its part.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "host/image/preview.hpp"
+
+namespace raya {
+namespace {
+
+Image of_one_colour(int width, int height, float value) {
+    return {width, height,
+            std::vector<float>(3u * static_cast<unsigned>(width) * static_cast<unsigned>(height), value)};
+}
+
+TEST_CASE("a preview keeps proportions, and small pictures their pixels", "[image]") {
+    struct Row {
+        int width, height, small_width, small_height;
+    };
+    for (const Row& row : {Row{256, 256, 256, 256}, Row{512, 512, 256, 256}, Row{1000, 500, 256, 128},
+                           Row{3, 16384, 1, 256}, Row{257, 1, 256, 1}, Row{20, 12, 20, 12}}) {
+        const Image small = preview_of(of_one_colour(row.width, row.height, 0.25f));
+        CHECK(small.width == row.small_width);
+        CHECK(small.height == row.small_height);
+        CHECK(small.rgb == of_one_colour(small.width, small.height, 0.25f).rgb);
+    }
+    CHECK_THROWS_AS(preview_of({0, 0, {}}), std::logic_error);
+}
+
+TEST_CASE("a preview's pixel is the mean of its part, clamped", "[image]") {
+    Image image{4, 2, {}};
+    for (int i = 0; i < 24; ++i) image.rgb.push_back(static_cast<float>(i) / 16 - 0.25f);
+    image.rgb[0] = std::nanf("");
+    const Image small = preview_of(image, 2);
+    REQUIRE(small.width == 2);
+    REQUIRE(small.height == 1);
+    const auto clamped = [&](std::size_t i) {
+        return std::isnan(image.rgb[i]) ? 0 : std::clamp(image.rgb[i], 0.f, 1.f);
+    };
+    for (std::size_t x = 0; x < 2; ++x)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t at = 6 * x + c;
+            CHECK(small.rgb[3 * x + c] ==
+                  Approx((clamped(at) + clamped(at + 3) + clamped(at + 12) + clamped(at + 15)) / 4));
+        }
+}
+
+TEST_CASE("a picture as it is shown has the codes of its tone", "[image]") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> light(-0.5f, 4);
+    Image image = of_one_colour(40, 30, 0);
+    for (float& value : image.rgb) value = light(random);
+    for (const Tone& tone : {Tone{}, Tone{.exposure = -1.5, .curve = ToneCurve::kReinhard}, Tone{.gamma = 1.8}}) {
+        const Image shown = as_shown(image, tone);
+        const ToneCodes codes(tone), usual(Tone{});
+        REQUIRE(shown.rgb.size() == image.rgb.size());
+        for (std::size_t at = 0; at < image.rgb.size(); at += 3)
+            if (codes(&image.rgb[at]) != usual(&shown.rgb[at])) FAIL("pixel " << at / 3);
+    }
+}
+
+TEST_CASE("a preview is as bright as its picture", "[image]") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> light(0, 1);
+    Image image = of_one_colour(768, 512, 0);
+    for (float& value : image.rgb) value = light(random);
+    const Image small = preview_of(image);
+    const auto mean = [](const Image& i) {
+        return std::accumulate(i.rgb.begin(), i.rgb.end(), 0.0) / static_cast<double>(i.rgb.size());
+    };
+    CHECK(small.width == 256);
+    CHECK(mean(small) == Approx(mean(image)).epsilon(2e-3));  // some pixels stand for one more column than others
+}
+
+}  // namespace
+}  // namespace raya
