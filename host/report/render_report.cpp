@@ -172,6 +172,7 @@ Json to_json(const RenderReport& r) {
     json["scene"] = r.scene;
     json["warnings"] = r.warnings;
     json["skipped"] = skipped_json(r.skipped);
+    json["view"] = r.view;
     json["image"] = image_json(r);
     json["machine"] = machine_json(r);
     json["device"] = {{"name", r.device.name},       {"platform", r.device.platform},
