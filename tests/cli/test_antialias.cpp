@@ -196,7 +196,7 @@ TEST_CASE("a mask that cannot be written is refused before anything is rendered"
     for (const char* other : {"x.json", "./x.pfm"}) refused(outputs / other, {other, "named twice"});
     refused(scene_file("planes"), {"planes.nff", "named twice"});
     refused("", {"--mask", "must not be empty"});
-    refused(outputs / "mask.jpg", {"mask.jpg", ".png, .exr, .pfm"});
+    refused(outputs / "mask.gif", {"mask.gif", ".png", ".exr", ".pfm", ".jpg"});
     refused(outputs / "missing/mask.png", {"/missing' does not exist", "mkdir -p"});
 }
 

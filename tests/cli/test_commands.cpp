@@ -78,7 +78,7 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
                                "RAYA_DEVICE",
                                "--kernel-dir DIR"};
     Words render = of_a_render;
-    render.insert(render.end(), {"SCENE.nff", ".png or .ppm (sRGB), .exr or .pfm (linear)",
+    render.insert(render.end(), {"SCENE.nff", ".exr or .pfm (linear)",
                                  "modelled cycles of each pixel", "--report FILE.json", "--profile",
                                  "--trace FILE.json[.gz]", "--trace-events N=1000000", "--trace-pes N=16", "--quiet"});
     Words bench = of_a_render;
