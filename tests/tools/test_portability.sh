@@ -131,9 +131,11 @@ expect "Oclgrind, renders: spheres --format fp32 --lanes 1: found by Oclgrind: I
 
 matrix --only "no such implementation"
 ((code == 1)) || fail "exit code $code where nothing ran"
-matrix --only GPU --checks defects --list
+matrix --checks defects --list
 ((code == 0)) || fail "exit code $code of --list"
-expect "GPU: "
+expect "Oclgrind: "
+# Where a GPU's driver is installed, it stands there in place of this row, be there a GPU or not.
+ls /etc/OpenCL/vendors | grep -vqE '^(pocl|rusticl|mesa)[.]icd$' || expect "GPU: "
 
 # The page is never written from a part of the matrix.
 page=$(<"$root/docs/portability.md")
