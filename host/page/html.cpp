@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-const std::string kNarrowSpace = "\u202f";
+constexpr const char* kNarrowSpace = "\u202f";
 constexpr std::size_t kOpenRows = 24, kMostRows = 400;
 
 // "35", "35 ms", "35 ± 5", "inf", "-", "12 345" with a narrow space: what a column of numbers has.
