@@ -116,8 +116,10 @@ const explorer = {
     const link = linkText(this.state);
     $("link").setAttribute("href", link);
     $("command").replaceChildren(...commandWords(`${this.about.command} ${optionsText(this.state)}`));
+    const before = location.hash;
     clearTimeout(this.keeping);
     this.keeping = setTimeout(() => {
+      if (location.hash !== before) return;  // a link that is about to be followed
       this.hash = link;
       if (location.hash !== link) history.replaceState(null, "", link);
     }, 250);
