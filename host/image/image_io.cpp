@@ -132,11 +132,6 @@ void write_image(const fs::path& path, const Image& image, const ImageAttributes
                  lower_case_extension(path, kImageExtensions), tone);
 }
 
-std::string png_of(const Image& image, const ImageAttributes& attributes) {
-    check_shape(image.width, image.height, 3, image.rgb.size());
-    return encode_codes("picture.png", "png", {image.width, image.height, 3, image.rgb}, attributes, {});
-}
-
 void write_image(const fs::path& path, const GreyImage& image, const ImageAttributes& attributes) {
     check_shape(image.width, image.height, 1, image.values.size());
     check_extension(path, kGreyImageExtensions);

@@ -31,10 +31,6 @@ void check_writable_target(const std::filesystem::path& path, std::span<const st
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes,
                  const Tone& tone = {});
 
-/// The bytes of that PNG file, by the usual tone. Throws UserError where there is no encoder, std::logic_error as
-/// above.
-std::string png_of(const Image& image, const ImageAttributes& attributes);
-
 /// As write_image() for one number a pixel: EXR (channel Y) or PFM.
 void write_image(const std::filesystem::path& path, const GreyImage& image, const ImageAttributes& attributes);
 

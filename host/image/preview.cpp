@@ -1,19 +1,14 @@
 #include "host/image/preview.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 
+#include "host/image/srgb.hpp"
+
 namespace raya {
 namespace {
-
-// The longer side gets `side`, the other its share, at least a pixel.
-int preview_side(int own, int longest, int side) {
-    if (longest <= side) return own;
-    return std::max(1, static_cast<int>((std::int64_t{own} * side + longest / 2) / longest));
-}
 
 double shown(float value) { return value > 0 ? std::min(1.0, static_cast<double>(value)) : 0; }
 
@@ -22,20 +17,19 @@ std::size_t begin_of(int at, int count, int pixels) {
     return static_cast<std::size_t>(std::int64_t{at} * pixels / count);
 }
 
-// The sRGB curve backwards (srgb.hpp).
-float light_of(std::uint8_t code) {
-    const double v = code / 255.0;
-    return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-}
-
 }  // namespace
+
+int preview_side(int own, int longest, int side) {
+    if (longest <= side) return own;
+    return std::max(1, static_cast<int>((std::int64_t{own} * side + longest / 2) / longest));
+}
 
 Image as_shown(const Image& image, const Tone& tone) {
     const ToneCodes codes(tone);
     Image shown{image.width, image.height, {}};
     shown.rgb.reserve(image.rgb.size());
     for (std::size_t at = 0; at + 2 < image.rgb.size(); at += 3)
-        for (const std::uint8_t code : codes(&image.rgb[at])) shown.rgb.push_back(light_of(code));
+        for (const std::uint8_t code : codes(&image.rgb[at])) shown.rgb.push_back(srgb_light(code));
     return shown;
 }
 

@@ -7,6 +7,10 @@ namespace raya {
 
 inline constexpr int kPreviewSide = 256;  // pixels
 
+/// Pixels of a preview's side where the picture has `own`, and `longest` along its longer side: that one gets `side`,
+/// the other its share, a pixel at least.
+int preview_side(int own, int longest, int side = kPreviewSide);
+
 /// At most `side` pixels a side, in the same proportions: each the mean of the pixels that it stands for, in linear
 /// light, of colours clamped to 0..1 as an 8-bit file shows them (NaN: 0). A picture that is small enough stays as it
 /// is, but for that. std::logic_error without pixels.

@@ -22,6 +22,8 @@ std::uint8_t code_between(const CodeBorders& borders, double linear) {
     return static_cast<std::uint8_t>(border - borders.begin());
 }
 
+float srgb_light(std::uint8_t code) { return static_cast<float>(linear_from_srgb(code / 255.0)); }
+
 std::uint8_t srgb_code(float linear) { return code_between(srgb_borders(), static_cast<double>(linear)); }
 
 }  // namespace raya

@@ -27,4 +27,7 @@ std::uint8_t code_between(const CodeBorders& borders, double linear);
 /// right to about 10^-16).
 std::uint8_t srgb_code(float linear);
 
+/// The linear value that a code stands for.
+float srgb_light(std::uint8_t code);
+
 }  // namespace raya

@@ -63,24 +63,13 @@ void add_difference(BenchComparison& sum, const char* what, const std::string& b
     sum.text += "warning: " + sum.remarks.back() + "\n";
 }
 
-Json rates_json(const BenchMeasurement* row) {
-    if (row == nullptr) return {};
-    return {{"best", row->best_rate()}, {"median", row->median_rate()}};
-}
-
 /// Of either side, a null pointer where it lacks the row.
 Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& said) {
-    const BenchMeasurement& row = now != nullptr ? *now : *before;
-    return {{"kernel", row.kernel},
-            {"scene", row.scene},
-            {"size", row.size},
-            {"array", row.array},
-            {"format", row.format},
-            {"lanes", row.lanes},
-            {"group", row.group_size},
-            {"mrays_per_s", rates_json(now)},
-            {"mrays_per_s_was", rates_json(before)},
-            {"verdict", said}};
+    Json json = measured_json(now != nullptr ? *now : *before);
+    json["mrays_per_s"] = now != nullptr ? rates_json(*now) : Json{};
+    json["mrays_per_s_was"] = before != nullptr ? rates_json(*before) : Json{};
+    json["verdict"] = said;
+    return json;
 }
 
 }  // namespace

@@ -20,19 +20,13 @@ namespace fs = std::filesystem;
 }
 
 Json row_json(const BenchMeasurement& row) {
-    Json json = {{"kernel", row.kernel},
-                 {"scene", row.scene},
-                 {"size", row.size},
-                 {"array", row.array},
-                 {"format", row.format},
-                 {"lanes", row.lanes},
-                 {"group", row.group_size},
-                 {"rays", row.rays},
-                 {"mrays_per_s", {{"best", row.best_rate()}, {"median", row.median_rate()}}},
-                 {"ms", {{"best", 1e3 * row.best_s}, {"median", 1e3 * row.median_s}}},
-                 {"samples", row.samples},
-                 {"hash", row.hash},
-                 {"build_options", row.build_options}};
+    Json json = measured_json(row);
+    json["rays"] = row.rays;
+    json["mrays_per_s"] = rates_json(row);
+    json["ms"] = {{"best", 1e3 * row.best_s}, {"median", 1e3 * row.median_s}};
+    json["samples"] = row.samples;
+    json["hash"] = row.hash;
+    json["build_options"] = row.build_options;
     if (!row.roofline) return json;
     if (!row.roofline->lacking.empty()) json["no_roofline"] = row.roofline->lacking;
     if (row.roofline->rows.empty()) return json;
@@ -82,6 +76,13 @@ std::string contents(const fs::path& path) {
 bool can_be_a_time(double seconds) { return std::isfinite(seconds) && seconds > 0; }
 
 }  // namespace
+
+Json measured_json(const BenchMeasurement& row) {
+    return {{"kernel", row.kernel}, {"scene", row.scene}, {"size", row.size},       {"array", row.array},
+            {"format", row.format}, {"lanes", row.lanes}, {"group", row.group_size}};
+}
+
+Json rates_json(const BenchMeasurement& row) { return {{"best", row.best_rate()}, {"median", row.median_rate()}}; }
 
 std::string bench_report_text(const BenchReport& report) {
     Json rows = Json::list();

@@ -36,6 +36,10 @@ struct BenchReport {
     Json compared{};  // compare_bench()'s, with the baseline's name; null: held against none
 };
 
+/// What was measured, by which rows are compared; and its rates, Mrays/s.
+Json measured_json(const BenchMeasurement& row);
+Json rates_json(const BenchMeasurement& row);
+
 /// By which a report is known again: its member "kind".
 inline constexpr const char* kBenchReportKind = "raya bench";
 

@@ -39,17 +39,13 @@ class Diverging {
     double mean_, farthest_ = 0;
 };
 
-std::uint32_t small_side(std::uint32_t own, std::uint32_t longest) {
-    return longest <= kPreviewSide ? own : std::max(1u, (own * kPreviewSide + longest / 2) / longest);
-}
-
 }  // namespace
 
 Image load_map(const raya_mapping& m, const std::vector<double>& loads) {
     const Diverging colours(loads);
-    const std::uint32_t longest = std::max(m.width, m.height);
-    const std::uint32_t width = small_side(m.width, longest), height = small_side(m.height, longest);
-    Image map{static_cast<int>(width), static_cast<int>(height), {}};
+    const auto longest = static_cast<int>(std::max(m.width, m.height));
+    Image map{preview_side(static_cast<int>(m.width), longest), preview_side(static_cast<int>(m.height), longest), {}};
+    const auto width = static_cast<std::uint32_t>(map.width), height = static_cast<std::uint32_t>(map.height);
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x) {
             double sum = 0, pixels = 0;

@@ -3,6 +3,8 @@
 #include <sstream>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "host/version.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/document.hpp"
