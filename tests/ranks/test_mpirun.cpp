@@ -1,4 +1,6 @@
 // Ranks that are processes: what mpirun starts makes the files of one process.
+#include <map>
+
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/ranks/run_ranks.hpp"

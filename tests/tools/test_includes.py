@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds every #include of the project to what CONTRIBUTING.md says ("The house"): a folder includes what its row names, and
-no other; headers do not go round in circles; what reports and models machines reaches no OpenCL.
+no other; headers do not go round in circles; what reports and models machines reaches no OpenCL; what is precompiled is
+included all the same by what uses it.
   test_includes.py [ROOT]"""
 import pathlib
 import re
@@ -10,6 +11,17 @@ root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__).resolve()
 root = root if root.is_dir() else root.parents[2]
 FOR_ALL = {"host/error.hpp", "host/embedded.hpp", "host/version.hpp"}
 BARE = "kernels/number/"  # a folder that others copy: its files name each other without a path
+# Headers that targets precompile (raya_precompile in CMake), and by what their use shows.
+PRECOMPILED = {
+    "CLI/CLI.hpp": r"\bCLI::(?!App\b|ParseError\b)",
+    "algorithm": r"\bstd::(sort|stable_sort|find_if|all_of|any_of|none_of|count_if|copy_if|shuffle|is_sorted|min_element|max_element|minmax_element|upper_bound|lower_bound|stable_partition|ranges::\w)",
+    "catch2/catch.hpp": r"\b(TEST_CASE|CHECK|REQUIRE|CAPTURE)\(",
+    "filesystem": r"\bstd::filesystem\b",
+    "fmt/core.h": r"\bfmt::",
+    "functional": r"\bstd::function\b",
+    "map": r"\bstd::map\b",
+}
+GIVEN_BY = {"fmt/format.h": "fmt/core.h", "fmt/ranges.h": "fmt/core.h"}
 NO_OPENCL = ["host/files/", "host/image/", "host/machine/", "host/report/", "host/scene/"]
 faults = []
 
@@ -73,6 +85,25 @@ def includes():
     return found
 
 
+def precompiled():
+    """({file: precompiled headers that it uses}, {file: those that it includes itself})."""
+    used, given = {}, {}
+    for path in sorted(p for top in ("host", "tests") for p in (root / top).rglob("*.?pp")):
+        name, text = path.relative_to(root).as_posix(), path.read_text()
+        code = re.sub(r'//.*|"(?:[^"\\\n]|\\.)*"', "", re.sub(r"^\s*#.*", "", text, flags=re.M))
+        used[name] = {header for header, use in PRECOMPILED.items() if re.search(use, code)}
+        given[name] = {GIVEN_BY.get(header, header) for header in re.findall(r"#\s*include\s+<([^>]+)>", text)}
+    return used, given
+
+
+def missing(used, given, graph):
+    found = []
+    for name, headers in used.items():
+        reached = set().union(*(given.get(file, set()) for file in reaches(graph, name) | {name}))
+        found += [f"{name} uses <{header}> and does not include it" for header in sorted(headers - reached)]
+    return found
+
+
 def folder_of(name, folders):
     """The longest folder with a row that `name` lies in."""
     return max((folder for folder in folders if name.startswith(folder)), key=len, default=None)
@@ -122,6 +153,10 @@ def main():
     rows = list(table_rows((root / "CONTRIBUTING.md").read_text()))
     allowed, graph = may_know(rows), includes()
     faults.extend(faults_of(graph, allowed))
+    used, given = precompiled()
+    faults.extend(missing(used, given, graph))
+    if len(missing(used, {**given, "tests/cli/test_commands.cpp": set()}, graph)) == len(missing(used, given, graph)):
+        faults.append("tests/cli/test_commands.cpp without its includes, and nobody says so")
     for name, target, fault in PLANTED:
         if name not in graph or target not in graph:
             faults.append(f"test_includes.py: {name} or {target} is gone; plant another fault")
