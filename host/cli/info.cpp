@@ -12,6 +12,7 @@
 #include "host/error.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/scene/scene_box.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -68,6 +69,7 @@ void info(const CLI::App& parsed, const InfoCommand& command) {
     SceneInput input = read_scene(command.render.scene, command.render.strict);
     change_view(command.render.view, input.scene);
     SceneReport report;
+    report.raya = raya_version();
     SceneNeeds needs(command.render, command.torus, input.scene);
     report.machines = needs_of_machines(parsed, command, needs);
     report.formats = needs.formats();

@@ -171,6 +171,8 @@ std::string refusals_text(const std::vector<MachineNeeds>& machines) {
 Json to_json(const SceneReport& r) {
     const Scene& s = r.scene;
     Json json;
+    json["kind"] = "raya info";
+    json["raya"] = r.raya;
     json["scene"] = r.file;
     json["warnings"] = r.warnings;
     json["skipped"] = list_json(r.skipped, remark_json);

@@ -43,6 +43,7 @@ struct MachineNeeds {
 };
 
 struct SceneReport {
+    std::string raya;  // version
     std::string file;
     Scene scene;
     Imath::Box3d box;  // of the finite objects

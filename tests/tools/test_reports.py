@@ -1,0 +1,329 @@
+#!/usr/bin/env python3
+"""Holds reports of every kind to the schemas of docs/schema, and the schemas to the reports: no member that is not described, none described
+that is never seen, and a report that is damaged by chance is refused.
+
+    tests/tools/test_reports.py RAYA PATCH_KERNELS [MPIRUN]      MPIRUN: none, and reports of ranks are left out
+RAYA_REPORT_MUTATIONS: how many damaged reports, 600; RAYA_REPORT_SEED: of which. Exit code 77 where there is no jsonschema.
+"""
+import copy, json, os, random, re, subprocess, sys, tempfile, time, warnings
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+sys.dont_write_bytecode = True
+from report_schema import read_schemas
+try:
+    import jsonschema
+except ImportError:
+    sys.exit(77)
+warnings.simplefilter("ignore", DeprecationWarning)  # RefResolver, which Debian's version needs, is old in later ones
+
+SCENES = ROOT / "scenes"
+# Described and not seen here, with the reason.
+SELDOM = {
+    "bench.json: rows[].no_roofline": "of devices that do not time their commands",
+    "bench-tune.json: results[].configuration.trees": "a knob of the grid, whose search takes long",
+    "bench-tune.json: results[].configuration.beams": "likewise",
+    "bench-tune.json: results[].configuration.registers": "NVIDIA alone",
+    "bench-tune.json: results[].configuration.link_exchange": "a knob of the torus, whose search takes long",
+}
+OF_RANKS = ("ping.json: ", "bench-ranks.json: ", "render.json: measured.ranks", "render.json: rank.")  # not seen without MPI
+# In all reports of this test, and yet no member that every report has.
+OPTIONAL = {"bench-tune.json: results[].configuration.local_words", "bench-tune.json: results[].configuration.batch",
+            "bench-tune.json: results[].configuration.lanes", "bench-tune.json: results[].configuration.group"}
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+# A file of the kernels, a text of it, and what takes its place: a check of verify must fail.
+FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
+OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # of any members, or of texts and numbers alike
+
+
+class Rules:
+    """The schemas, as jsonschema and this test see them."""
+
+    def __init__(self, change=lambda schema: schema):
+        self.schemas = read_schemas()
+        for root in self.schemas.values():
+            root.value = change(root.value)
+        self.store = {"file:///" + name: root.value for name, root in self.schemas.items()}
+        self.whole = {name: self.validator(root) for name, root in self.schemas.items()}
+
+    def validator(self, node):
+        resolver = jsonschema.RefResolver("file:///" + node.file, self.schemas[node.file].value, store=self.store)
+        return jsonschema.Draft202012Validator(node.value, resolver=resolver)
+
+    def wrong(self, name, report):
+        """What is wrong with a report, a line each."""
+        return [f"{'.'.join(map(str, e.absolute_path)) or 'the report'}: {e.message[:200]}" for e in self.whole[name].iter_errors(report)]
+
+    def meet(self, node, value, met):
+        """Adds what of the schema describes `value`."""
+        if node.has("$ref"):
+            self.meet(node.target(), value, met)
+        for key in ("anyOf", "oneOf"):
+            for i in range(len(node.get(key, []))):
+                if self.validator(node[key][i]).is_valid(value):
+                    self.meet(node[key][i], value, met)
+        if node.has("if"):
+            branch = "then" if self.validator(node["if"]).is_valid(value) else "else"
+            if node.has(branch):
+                self.meet(node[branch], value, met)
+        if isinstance(value, dict):
+            for name, member in node.members():
+                if name in value:
+                    met.add(place(member))
+                    self.meet(member, value[name], met)
+        if isinstance(value, list) and node.has("items"):
+            for item in value:
+                self.meet(node["items"], item, met)
+
+
+def place(node):
+    """'render.json: load.simulated' of a member's node; a definition's name stands before its members."""
+    keys, path = iter(node.pointer.strip("/").split("/")), ""
+    for key in keys:
+        if key in ("properties", "$defs"):
+            path += ("." if path else "") + next(keys)
+        elif key == "items":
+            path += "[]"
+    return f"{node.file}: {path}"
+
+
+class Reports:
+    """Made by the program, in `folder`."""
+
+    def __init__(self, raya, patch_kernels, mpirun, folder):
+        self.raya, self.patch_kernels, self.mpirun, self.folder = raya, patch_kernels, mpirun, Path(folder)
+        self.made = []  # (schema's file, what made it, report)
+
+    def run(self, *command, code=0, say=subprocess.DEVNULL, **variables):
+        command = [str(word) for word in command]
+        done = subprocess.run(command, cwd=self.folder, env={**os.environ, **MPI, **variables}, stdout=say, stderr=subprocess.PIPE, text=True)
+        assert done.returncode == code, f"{' '.join(command)}: exit code {done.returncode}\n{done.stderr}"
+        return done.stdout
+
+    def one(self, form, *command, of="r.json", code=0, launcher=(), **variables):
+        start = time.monotonic()
+        self.run(*launcher, self.raya, *command, code=code, **variables)
+        self.take(form, " ".join(map(str, command)), (self.folder / of).read_text(), time.monotonic() - start)
+
+    def take(self, form, name, text, seconds=0):
+        print(f"{seconds:6.2f} s  {name}")
+        self.made.append((form + ".json", name, json.loads(text)))
+
+    def renders(self):
+        odd = self.folder / "odd.nff"
+        odd.write_text((SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
+        spheres, few = SCENES / "spheres.nff", ["--size", "16", "--lanes", "1", "--pes", "8", "--quiet", "--report", "r.json"]
+
+        def render(scene, *options, output="x.ppm", launcher=()):
+            self.one("render", "render", scene, *options, *few, "-o", output, launcher=launcher)
+
+        render(spheres, "--page", "r.html")
+        render(odd, "--mapping", "rows", "--light", "1,2,3", output="x.pfm")
+        render(spheres, "--antialias", "filter", "--exchange", "bus", "--tone", "reinhard", "--gamma", "2", "--fold", "block")
+        render(spheres, "--antialias", "supersample", "--points", "diagonals")
+        render(spheres, "--mapping", "dynamic:4")
+        render(spheres, "--mapping", "hybrid:4,10,0.5", "--exposure", "-1")
+        for accel in ("grid", "bvh"):
+            render(spheres, "--accel", accel, "--machine", "grande", "--antialias", "supersample", "--exchange", "bus-broadcast")
+        few[4:6] = []  # the torus has nodes
+        torus = ["--machine", "torus", "--nodes", "2x2x2"]
+        render(spheres, *torus, "--async", "--packets", "p.csv.gz", "--returns", "rays")
+        render(spheres, *torus, "--links", "torus2d", "--inject", "root")
+        if self.mpirun:
+            launcher = [self.mpirun, "-n", "2"]
+            render(spheres, launcher=launcher)
+            render(spheres, *torus, "--profile", launcher=launcher)
+            self.take("ping", "ping", self.run(*launcher, self.raya, "ping", say=subprocess.PIPE))
+
+    def others(self):
+        scene = SCENES / "spheres.nff"
+        few = ["--size", "16", "--lanes", "1", "--samples", "1", "--report"]
+        self.one("bench", "bench", scene, "--format", "fp32,e6m15", *few, "base.json", of="base.json")
+        self.one("bench", "bench", scene, "--format", "fp32", "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *few, "r.json")
+        self.one("bench", "bench", scene, "--format", "fp32", "--ways", "none", *few, "r.json")
+        if self.mpirun:
+            self.one("bench-ranks", "bench", scene, "--ranks", "1", "--pes", "8", *few, "r.json", RAYA_MPIRUN=self.mpirun)
+        self.tune(scene)
+        check = ["verify", "--brief", "--lanes", "1", "--only", "machine mapping: rows", "--report", "r.json"]
+        self.one("verify", *check)
+        self.run(self.patch_kernels, "kernels", *FAULT)
+        self.one("verify", *check, "--kernel-dir", "kernels", code=4)
+        for words in ((self.folder / "odd.nff", "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
+            self.take("info", f"info {words[0]}", self.run(self.raya, "info", *words, "--json", say=subprocess.PIPE))
+        for study in ("table2", "table4"):
+            self.one("study", "study", study, "--size", "32", "-o", "study", of=f"study/{study}.json", RAYA_PYTHON="/bin/false")
+        self.one("study-formats", "study", "formats", scene, "--size", "16", "--lanes", "1", "--format", "e6m15,e6m15t", "--samples", "1", "-o", "study",
+                 of="study/formats.json")
+
+    def tune(self, scene):
+        """Until a candidate has ended, however slow this machine is."""
+        seconds = 1
+        while not (self.made[-1][0] == "bench-tune.json" and self.made[-1][2]["results"]):
+            self.one("bench-tune", "bench", scene, "--tune", "--seconds", seconds, "--ways", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
+                     XDG_CACHE_HOME=str(self.folder / "cache"))
+            seconds *= 2
+        self.take("tuned", "what it keeps", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
+
+
+def members_met(rules, made):
+    met = set()
+    for form, _, report in made:
+        rules.meet(rules.schemas[form], report, met)
+    return met
+
+
+def unseen(rules, met, ranks):
+    """What is described and never seen, or seen and said to be seldom."""
+    for root in rules.schemas.values():
+        for node in root.walk():
+            for _, member in node.members():
+                name = place(member)
+                if name not in met and name not in SELDOM and (ranks or not name.startswith(OF_RANKS)):
+                    yield f"{name}: described, and in no report of this test"
+    yield from (f"{name}: not so seldom" for name in SELDOM if name in met)
+
+
+def told(node):
+    return node.get("description") or node.has("$ref") and told(node.target())
+
+
+def loose(rules):
+    """Members that nothing is said of, and objects that take any member."""
+    for root in rules.schemas.values():
+        jsonschema.Draft202012Validator.check_schema(root.value)
+        closed = {id(n.target().value) for n in root.walk() if n.has("$ref") and n.get("unevaluatedProperties") is False}
+        closed |= {id(n[key].value) for n in root.walk() for key in ("then", "else") if n.has(key)}
+        for node in root.walk():
+            for name, member in node.members():
+                if not node.pointer.endswith("/if") and not told(member):
+                    yield f"{place(member)}: no description"
+            shut = False in (node.get("additionalProperties"), node.get("unevaluatedProperties"))
+            if node.has("properties") and not node.pointer.endswith("/if") and not shut and id(node.value) not in closed:
+                yield f"{node.file}{node.pointer}: takes any member"
+
+
+def relaxed(schema):
+    """For an example, from which members are left out."""
+    if isinstance(schema, list):
+        return [relaxed(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    return {key: value if key == "if" else relaxed(value) for key, value in schema.items() if key not in ("required", "dependentRequired", "minItems")}
+
+
+def wrong_examples():
+    rules = Rules(relaxed)
+    for name, root in rules.schemas.items():
+        yield from (f"{name}: its example: {line}" for example in root.get("examples", []) for line in rules.wrong(name, example))
+
+
+def variant(value):
+    """What kind of its kind an object is: other members are its own."""
+    words = [value[key] for key in ("kind", "method", "status") if isinstance(value.get(key), str)]
+    return f"<{words[0] if words else ''}{' torus' * ('torus' in value)}>"
+
+
+def spots(value, path):
+    """(path, holder, key) of every value in a report; of lists the first and the last."""
+    if isinstance(value, dict):
+        own = path + variant(value)
+        for key in value:
+            below = f"{own}.{key}"
+            yield below, value, key
+            yield from spots(value[key], below)
+    if isinstance(value, list) and value:
+        for i in {0, len(value) - 1}:
+            yield path + "[]", value, i
+            yield from spots(value[i], path + "[]")
+
+
+def plain(path):
+    return re.sub(r"<[^>]*>", "", path).replace(": .", ": ")
+
+
+class Damage:
+    """Faults that no report may have, planted at random. What every report has is known from the reports, not from the schemas."""
+
+    def __init__(self, made, seed):
+        self.random, self.made, self.always, self.negative = random.Random(seed), made, {}, set()
+        for form, _, report in made:
+            for path, holder, key in spots({"": report}, form + ": "):
+                value = holder[key]
+                if isinstance(value, dict):
+                    own = path + variant(value)
+                    self.always[own] = self.always.get(own, set(value)) & set(value)
+                if isinstance(value, (int, float)) and value < 0:
+                    self.negative.add(path)
+
+    def one(self):
+        """(form, what was done, the damaged report); None where the fault drawn cannot be planted there."""
+        form, name, report = self.random.choice(self.made)
+        root = {"": copy.deepcopy(report)}
+        path, holder, key = self.random.choice(list(spots(root, form + ": ")))
+        value, said = holder[key], self.random.choice(["drop", "other type", "unknown member", "negative"])
+        open_ended = OPEN.match(plain(path).replace(": .", ": "))
+        if said == "drop" and isinstance(value, dict):
+            always = [k for k in self.always[path + variant(value)] if not self.optional(path, k)]
+            if open_ended or not always:
+                return None
+            key = self.random.choice(sorted(always))
+            del value[key]
+        elif said == "unknown member" and isinstance(value, dict) and not open_ended:
+            key = self.random.choice(["x", "Kind", "total ms", "u"])
+            value[key] = self.random.choice([1, "text", None])
+        elif said == "other type" and not open_ended and value is not None:
+            holder[key] = self.other(value)
+        elif said == "negative" and type(value) is int and path not in self.negative and not open_ended and "exponent" not in path and not path.endswith("y[]"):
+            holder[key] = -1 - value
+        else:
+            return None
+        return form, f"{name}: {said} at {plain(path)}, {key!r}", root[""]
+
+    def optional(self, path, key):
+        return f"{plain(path)}.{key}".replace(": .", ": ") in OPTIONAL
+
+    def other(self, value):
+        if isinstance(value, (bool, str)):
+            return self.random.choice([17, [value], {"": value}])
+        if isinstance(value, (int, float)):
+            return self.random.choice([str(value), [value], True])
+        return self.random.choice(["text", 17, [value]])
+
+
+def accepted(rules, damage, wanted):
+    """Damaged reports that nobody noticed."""
+    planted = 0
+    while planted < wanted:
+        fault = damage.one()
+        if fault is None:
+            continue
+        planted += 1
+        form, said, report = fault
+        if rules.whole[form].is_valid(report):
+            yield f"not refused: {form}: {said}"
+
+
+def main(raya, patch_kernels, mpirun=""):
+    seed = int(os.environ.get("RAYA_REPORT_SEED") or random.randrange(1 << 32))
+    print(f"seed {seed}", flush=True)
+    rules = Rules()
+    with tempfile.TemporaryDirectory() as folder:
+        reports = Reports(Path(raya).resolve(), Path(patch_kernels).resolve(), mpirun, folder)
+        reports.renders()
+        reports.others()
+    start, made = time.monotonic(), reports.made
+    wrong = [f"{form}, {name}: {line}" for form, name, report in made for line in rules.wrong(form, report)]
+    wrong += [*loose(rules), *wrong_examples(), *unseen(rules, members_met(rules, made), bool(mpirun))]
+    print(f"{time.monotonic() - start:6.2f} s  {len(made)} reports held to {len(rules.schemas)} schemas", flush=True)
+    mutations = int(os.environ.get("RAYA_REPORT_MUTATIONS") or 600)
+    wrong += accepted(rules, Damage(made, seed), mutations)
+    print(f"{time.monotonic() - start:6.2f} s  and {mutations} damaged ones")
+    print("\n".join(f"FAILED: {line}" for line in wrong))
+    return bool(wrong)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (3, 4):
+        sys.exit(__doc__)
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,51 @@
+"""The schemas of docs/schema: reading them, and following their references. For tools/report_doc and tests/tools/test_reports.py."""
+import json
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parents[1] / "docs" / "schema"
+
+
+class Node:
+    """A schema within a file: {"type": "integer"} of render.json at /properties/walks."""
+
+    def __init__(self, schemas, file, value, pointer=""):
+        self.schemas, self.file, self.value, self.pointer = schemas, file, value, pointer
+
+    def __getitem__(self, key):
+        return Node(self.schemas, self.file, self.value[key], f"{self.pointer}/{key}")
+
+    def get(self, key, other=None):
+        return self.value[key] if self.has(key) else other
+
+    def has(self, key):
+        return isinstance(self.value, dict) and key in self.value
+
+    def members(self):
+        """(name, node) of what an object may have, whatever else it has."""
+        return [(name, self["properties"][name]) for name in self.get("properties", {})]
+
+    def target(self):
+        """What a reference leads to; None where there is none."""
+        if not self.has("$ref"):
+            return None
+        file, pointer = self.value["$ref"].split("#")
+        node = self.schemas[file or self.file]
+        for key in pointer.strip("/").split("/"):
+            node = node[key]
+        return node
+
+    def walk(self):
+        """This node and all below it, not through references."""
+        yield self
+        keys = self.value if isinstance(self.value, dict) else range(len(self.value))
+        for key in keys:
+            if isinstance(self.value[key], (dict, list)) and key != "examples":
+                yield from self[key].walk()
+
+
+def read_schemas(folder=FOLDER):
+    """File name: its root node."""
+    schemas = {}
+    for path in sorted(Path(folder).glob("*.json")):
+        schemas[path.name] = Node(schemas, path.name, json.loads(path.read_text()))
+    return schemas
