@@ -22,7 +22,8 @@ class Node:
 
     def members(self):
         """(name, node) of what an object may have, whatever else it has."""
-        return [(name, self["properties"][name]) for name in self.get("properties", {})]
+        nodes = [(name, self["properties"][name]) for name in self.get("properties", {})]
+        return [(name, node) for name, node in nodes if set(node.value) != {"required"}]  # which says more of one
 
     def target(self):
         """What a reference leads to; None where there is none."""
