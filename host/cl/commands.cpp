@@ -37,11 +37,17 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
 
 Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
-    const StepLog::Step building = step("build " + name);
     std::vector<std::string> all = options;
     if (noted_arguments_ > 0) all.emplace_back("-cl-kernel-arg-info");  // names of arguments; the code stays the same
     if (const char* more = std::getenv("RAYA_BUILD_OPTIONS"); more != nullptr && *more != '\0') all.emplace_back(more);
-    return Program(context_, device_, name, source, all);
+    const auto build = [&] {
+        const StepLog::Step building = step("build " + name);
+        return Program(context_, device_, name, source, all);
+    };
+    if (!kept_programs_) return build();
+    const auto known = kept_programs_->find({all, source});
+    return known != kept_programs_->end() ? known->second
+                                          : kept_programs_->emplace(std::pair(all, source), build()).first->second;
 }
 
 cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const {

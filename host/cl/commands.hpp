@@ -1,10 +1,12 @@
 // A session on one device: every buffer, program and command is made here; every command has a label and is profiled.
 #pragma once
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "host/cl/buffer.hpp"
@@ -49,6 +51,9 @@ class Session {
 
     /// See Program.
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
+
+    /// From now on a program is built once: the same source with the same options again gives the one that was built.
+    void keep_programs() { kept_programs_ = std::make_unique<KeptPrograms>(); }
 
     /// Runs `groups` work-groups of `group_size` work-items each (one dimension). Does not wait.
     template <class... Params>
@@ -170,6 +175,7 @@ class Session {
         const std::string& name;
         std::size_t offset;  // bytes
     };
+    using KeptPrograms = std::map<std::pair<std::vector<std::string>, std::string>, Program>;  // by options, source
     struct Pending {  // a command whose times are not known yet
         CommandRecord record;
         cl::Event event;
@@ -214,6 +220,7 @@ class Session {
     std::unique_ptr<Staging> staging_;
     std::vector<Pending> pending_;
     Profile profile_;
+    std::unique_ptr<KeptPrograms> kept_programs_;  // null: none are kept
     StepLog* steps_ = nullptr;
     std::size_t noted_arguments_ = 0;  // launches whose arguments are still to be kept
 };

@@ -14,12 +14,20 @@ void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) 
     refuse_options_of_other_machines(parsed, machine);
     if (ranks.first()) {  // who writes; elsewhere the folders need not be there
         check_trace(parsed, command.trace);
+        if (command.frames.given()) check_frames(command);
         check_targets(command);
     }
-    machine.kind == MachineKind::kTorus ? render_on_torus(command, ranks) : render_on_ring(command, ranks);
+    RenderRun run(command, ranks);
+    if (command.frames.given()) return render_frames(parsed, command, run);
+    render_image(command, run);
 }
 
 }  // namespace
+
+std::optional<RenderReport> render_image(const RenderCommand& command, RenderRun& run) {
+    const bool torus = machine_named(command.render.machine).kind == MachineKind::kTorus;
+    return torus ? render_on_torus(command, run) : render_on_ring(command, run);
+}
 
 void add_render_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
@@ -34,6 +42,7 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
         ->required()
         ->type_name("IMAGE");
     add_tone_options(*command, options->tone);
+    add_frame_options(*command, options->frames);
     add_render_options(*command, options->render);
     add_torus_options(*command, options->torus);
     add_value(*command, "--cost", options->cost,

@@ -3,7 +3,9 @@
 #pragma once
 #include <string>
 
+#include "host/cli/frame_options.hpp"
 #include "host/cli/render_options.hpp"
+#include "host/cli/render_run.hpp"
 #include "host/cli/render_watch.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/tone_options.hpp"
@@ -22,8 +24,9 @@ struct RenderCommand {
     TorusOptions torus;
     std::string image, cost, mask, report, page;
     ToneOptions tone;
+    FrameOptions frames;
     TraceOptions trace;
-    bool profile = false, quiet = false;
+    bool profile = false, quiet = false, summary = true;
 
     /// Commands are timed where somebody will read the times: a GPU's queue is faster without.
     Timing timing() const { return profile || reports() || !trace.file.empty() ? Timing::kOn : Timing::kOff; }
@@ -34,8 +37,19 @@ struct RenderCommand {
 };
 
 /// Renders on a ring machine, on the torus machine, and writes what was asked for: in rank 0, where there are several.
-void render_on_ring(const RenderCommand& command, Ranks& ranks);
-void render_on_torus(const RenderCommand& command, Ranks& ranks);
+/// What the report tells; empty in other ranks.
+std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderRun& run);
+std::optional<RenderReport> render_on_torus(const RenderCommand& command, RenderRun& run);
+
+/// On the machine that the command names.
+std::optional<RenderReport> render_image(const RenderCommand& command, RenderRun& run);
+
+/// Refuses what frames cannot be written to, or what is of one image alone. UserError.
+void check_frames(const RenderCommand& command);
+
+/// The frames of a sequence, but for those that are there already: their files, a line for each on stdout, and the
+/// record (frame_record.hpp). `parsed` holds the command's options as they were given. UserError.
+void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run);
 
 /// The scene, seen as the options say, which rank 0 alone reads. Elsewhere it has a name and a resolution, and no
 /// object; `options` name what rank 0 would choose from what it has read.

@@ -3,7 +3,6 @@
 
 #include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/cli/tuned_option.hpp"
 #include "host/files/progress.hpp"
 #include "host/machine/budget.hpp"
 #include "host/ring/mapping.hpp"
@@ -83,43 +82,36 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 }  // namespace
 
-void render_on_ring(const RenderCommand& command, Ranks& ranks) {
-    RenderWatch watch(command.trace, command.roofline());
-    std::optional<ProgressBar> bar(std::in_place, !command.quiet && ranks.first(), "reading the scene");
-    RenderOptions options = command.render;
-    SceneInput input = read_scene_once(watch, options, ranks);
+std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderRun& run) {
+    Ranks& ranks = run.ranks;
+    RenderWatch& watch = run.watch;
+    SceneInput& input = run.input;
     const Scene& scene = input.scene;
-    RingSettings settings = ring_settings(options, scene);
+    RingSettings settings = ring_settings(run.options, scene);
     settings.keep_costs = !command.cost.empty();
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
-    const TunedUse tuned = use_tuned(options.no_tuned, &input.warnings);
-    bar->stage("preparing");
-    const cl::Device device =
-        watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
-    Session session = watch.steps().during("open device", [&] { return Session(device, command.timing()); });
-    watch.observe(session, ranks);
+    Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
-    bar->stage("rendering");
-    const RingResult result =
-        renderer.render(bar->active() ? [&](double done) { bar->update(done); } : ProgressCallback{});
+    run.progress.stage("rendering");
+    const RingResult result = renderer.render(run.progress.callback());
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "pes", result);
     watch.gather(session, ranks);
-    if (!ranks.first()) return;
-    bar->stage("writing");
-
+    if (!ranks.first()) return {};
+    run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
     watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
     if (command.roofline()) {
-        bar->stage("measuring the device's peak");
-        add_profile(report, watch, device, settings.format, ring_kernel_work(settings, result), input.warnings);
+        run.progress.stage("measuring the device's peak");
+        add_profile(report, watch, run.device(), settings.format, ring_kernel_work(settings, result), input.warnings);
     }
-    bar.reset();
+    run.progress.end();
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
     const ProgressBar tracing(!command.quiet && watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
+    return report;
 }
 
 }  // namespace raya

@@ -5,7 +5,6 @@
 
 #include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/cli/tuned_option.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/torus/async_machine.hpp"
@@ -36,7 +35,7 @@ struct ByProducts {
     std::optional<HistoryRecorder> history;
 };
 
-TorusResult render_with_progress(TorusRenderer& renderer, ProgressBar& bar, ByProducts& makes) {
+TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progress, ByProducts& makes) {
     PacketSink packet_sink;
     SuperstepSink step_sink;
     NodeWorkSink work_sink;
@@ -47,17 +46,17 @@ TorusResult render_with_progress(TorusRenderer& renderer, ProgressBar& bar, ByPr
             if (makes.trace) makes.trace->add_packet(record);
         };
     if (makes.history) work_sink = [&](const NodeWork& work) { makes.history->add(work); };
-    bar.stage("rendering");
-    return renderer.render(bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{}, packet_sink,
-                           step_sink, makes.packets ? 1 : TorusTrace::kPacketsEvery, work_sink);
+    progress.stage("rendering");
+    return renderer.render(progress.callback(), packet_sink, step_sink, makes.packets ? 1 : TorusTrace::kPacketsEvery,
+                           work_sink);
 }
 
 // Where the machine stands still, a queue is looked for that is long enough.
-TorusResult render_to_its_end(TorusRenderer& renderer, ProgressBar& bar, ByProducts& makes) {
+TorusResult render_to_its_end(TorusRenderer& renderer, RenderProgress& progress, ByProducts& makes) {
     try {
-        return render_with_progress(renderer, bar, makes);
+        return render_with_progress(renderer, progress, makes);
     } catch (const Standstill& still) {
-        bar.stage("looking for a queue that is long enough");
+        progress.stage("looking for a queue that is long enough");
         const QueueFound found = longer_queue(still.figures.queue, renderer.queue_trial());
         throw Standstill(still.figures, queue_remedy(found));
     }
@@ -143,44 +142,39 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
 
 }  // namespace
 
-void render_on_torus(const RenderCommand& command, Ranks& ranks) {
-    RenderWatch watch(command.trace, command.roofline());
-    std::optional<ProgressBar> bar(std::in_place, !command.quiet && ranks.first(), "reading the scene");
-    RenderOptions options = command.render;
-    SceneInput input = read_scene_once(watch, options, ranks);
+std::optional<RenderReport> render_on_torus(const RenderCommand& command, RenderRun& run) {
+    Ranks& ranks = run.ranks;
+    RenderWatch& watch = run.watch;
+    SceneInput& input = run.input;
     const Scene& scene = input.scene;
-    const TorusSettings settings = torus_settings(options, command.torus, scene);
+    const TorusSettings settings = torus_settings(run.options, command.torus, scene);
     refuse_history_of_ranks(settings, ranks);
-    const TunedUse tuned = use_tuned(options.no_tuned, &input.warnings);
-    bar->stage("preparing");
-    const cl::Device device =
-        watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
-    Session session = watch.steps().during("open device", [&] { return Session(device, command.timing()); });
-    watch.observe(session, ranks);
+    Session& session = run.session();
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     ByProducts makes(command, watch, settings);
-    const TorusResult result = render_to_its_end(renderer, *bar, makes);
+    const TorusResult result = render_to_its_end(renderer, run.progress, makes);
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "nodes", result);
     watch.gather(session, ranks);
-    if (!ranks.first()) return;
-    bar->stage("writing");
+    if (!ranks.first()) return {};
+    run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
     if (makes.history) {
-        bar->stage("simulating");
+        run.progress.stage("simulating");
         add_asynchronous_time(*report.torus, command, settings, makes.history->finish(), watch.steps());
     }
     write_images(command, result, report, scene, makes, watch.steps());
     if (command.roofline()) {
-        bar->stage("measuring the device's peak");
-        add_profile(report, watch, device, settings.format, torus_kernel_work(settings, result), input.warnings);
+        run.progress.stage("measuring the device's peak");
+        add_profile(report, watch, run.device(), settings.format, torus_kernel_work(settings, result), input.warnings);
     }
-    bar.reset();
+    run.progress.end();
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
     const ProgressBar tracing(!command.quiet && watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& file) { makes.trace->add_to(file, result, command.trace.pes); });
+    return report;
 }
 
 }  // namespace raya

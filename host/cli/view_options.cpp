@@ -61,17 +61,6 @@ std::string viewpoint_text(const ViewOptions& v) {
     return text;
 }
 
-void change_viewpoint(const ViewOptions& v, View& view) {
-    if (!v.from.empty()) view.from = vector_of("--from", v.from, kPoint);
-    if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);
-    if (!v.up.empty()) view.up = vector_of("--up", v.up, kPoint);
-    if (v.angle) view.angle_degrees = *v.angle;
-    const std::string given = viewpoint_text(v);
-    if (given.empty()) return;
-    const std::string fault = view_fault(view);
-    if (!fault.empty()) throw UserError(fmt::format("{}: {}", given, fault));
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> ViewOptions::words() const {
@@ -108,6 +97,17 @@ void add_view_options(CLI::App& command, ViewOptions& v) {
 const std::vector<std::string>& view_option_names() {
     static const std::vector<std::string> names = {"from", "at", "up", "angle", "background", "light"};
     return names;
+}
+
+void change_viewpoint(const ViewOptions& v, View& view) {
+    if (!v.from.empty()) view.from = vector_of("--from", v.from, kPoint);
+    if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);
+    if (!v.up.empty()) view.up = vector_of("--up", v.up, kPoint);
+    if (v.angle) view.angle_degrees = *v.angle;
+    const std::string given = viewpoint_text(v);
+    if (given.empty()) return;
+    const std::string fault = view_fault(view);
+    if (!fault.empty()) throw UserError(fmt::format("{}: {}", given, fault));
 }
 
 void change_view(const ViewOptions& v, Scene& scene) {

@@ -31,6 +31,9 @@ void add_view_options(CLI::App& command, ViewOptions& view);
 /// The names of those options, without dashes.
 const std::vector<std::string>& view_option_names();
 
+/// Puts what was given of the camera in place of what `view` says. UserError as change_view().
+void change_viewpoint(const ViewOptions& options, View& view);
+
 /// Puts what was given in place of what the scene says, by the rules of the reader of NFF. UserError names the option.
 void change_view(const ViewOptions& view, Scene& scene);
 

@@ -98,3 +98,21 @@ TEST_CASE("a failed build shows log, options, device and program", "[cl]") {
     CHECK_THAT(text, Contains("-DRAYA_A=1 -DRAYA_B=2"));
     CHECK_THAT(text, Contains(session.device().platform) && Contains(session.device().name));
 }
+
+TEST_CASE("programs that are kept are built once for each text and options", "[cl]") {
+    Session session(choose_device(""));
+    StepLog steps;
+    session.observe(steps, 0);
+    session.keep_programs();
+    const auto build = [&](const char* shift, const std::string& source) {
+        return session.build("test", source, {shift});
+    };
+    build("-DRAYA_SHIFT=0.5f", kSource);
+    build("-DRAYA_SHIFT=0.5f", kSource);
+    CHECK(steps.steps().size() == 1);
+    build("-DRAYA_SHIFT=1.5f", kSource);
+    build("-DRAYA_SHIFT=0.5f", kSource + "\n");
+    CHECK(steps.steps().size() == 3);
+    CHECK(build("-DRAYA_SHIFT=1.5f", kSource).options() == "-DRAYA_SHIFT=1.5f");
+    CHECK(steps.steps().size() == 3);
+}

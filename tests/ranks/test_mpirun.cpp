@@ -71,6 +71,31 @@ TEST_CASE("mpirun: picture, counts, loads and packets of the torus are those of 
                               "16", "--group", "1", "--quiet"});
 }
 
+TEST_CASE("mpirun: frames are those of one process, and not made twice", "[ranks][.mpirun]") {
+    const ScratchFolder folder;
+    const Words render = {"render",   scene_file("centre"),
+                          "-o",       folder / "x.ppm",
+                          "--frames", "1:3",
+                          "--turn",   "360",
+                          "--lanes",  "4",
+                          "--size",   "24x16",
+                          "--pes",    "8"};
+    REQUIRE(run_raya(render).code == 0);
+    const Files one = files_in(folder);
+    REQUIRE(one.size() == 4);
+    for (const Mpi& mpi : mpis_here()) {
+        Words words = {"-n", "3", mpi.program};
+        words.insert(words.end(), render.begin(), render.end());
+        for (const char* told : {"3 frames, 3 rendered", "3 frames, 0 rendered"}) {
+            const RanksOutcome run = run_ranks(mpi, words);
+            INFO(run.told());
+            CHECK(run.code == 0);
+            CHECK_THAT(run.out, Catch::Contains(told));
+        }
+        CHECK((files_in(folder) == one));
+    }
+}
+
 TEST_CASE("mpirun: rank 0 alone has stdin and stdout", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const std::string small = " --quiet --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";

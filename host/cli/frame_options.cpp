@@ -1,0 +1,103 @@
+#include "host/cli/frame_options.hpp"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+#include "host/cli/camera_path.hpp"
+#include "host/cli/options.hpp"
+#include "host/error.hpp"
+#include "host/scene/turn.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint32_t kMostFrames = 999'999;
+constexpr double kMostTurn = 360'000;  // degrees
+
+[[noreturn]] void refuse_frames(const std::string& text) {
+    throw UserError(fmt::format(
+        "--frames {}: must be A:B, frames A to B, or A:B/N, those of a sequence of N; 0..{} each", text, kMostFrames));
+}
+
+std::uint32_t number_of(const std::string& frames, std::string_view word) {
+    std::uint32_t number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc{} || end != word.data() + word.size() || number > kMostFrames) refuse_frames(frames);
+    return number;
+}
+
+std::vector<Frame> frames_on_path(const FrameOptions& o, const View& view) {
+    const std::vector<View> cameras = read_camera_path(o.camera_path, view);
+    FrameRange range{1, static_cast<std::uint32_t>(cameras.size())};
+    if (!o.frames.empty()) range = parse_frames(o.frames);
+    if (range.first < 1 || range.last > cameras.size())
+        throw UserError(fmt::format("--frames {}: {} has {} cameras, frames 1 to {}", o.frames, o.camera_path,
+                                    cameras.size(), cameras.size()));
+    std::vector<Frame> frames;
+    for (std::uint32_t n = range.first; n <= range.last; ++n) frames.push_back({n, cameras[n - 1]});
+    return frames;
+}
+
+}  // namespace
+
+void add_frame_options(CLI::App& command, FrameOptions& o) {
+    add_value(command, "--frames", o.frames,
+              "Render frames A to B into numbered files, IMAGE-0001.png and so on, also those of --cost, --mask and "
+              "--report; A:B/N: of a sequence from 1 to N. IMAGE-frames.json keeps what was rendered: frames whose "
+              "settings and files are as it says are not rendered again")
+        ->type_name("A:B[/N]");
+    add_value(command, "--turn", o.turn,
+              "Of --frames: the eye goes so many degrees round the axis through --at along --up, anticlockwise seen "
+              "from above, an equal part before each frame but the first; -360000..360000")
+        ->type_name("DEGREES");
+    add_value(command, "--camera-path", o.camera_path,
+              "A camera for each frame: a line of FILE each, with any of from, at, up and angle as on the command "
+              "line, such as: from 1,2,3 angle 40; the others stay. Empty lines and what follows # are passed over")
+        ->type_name("FILE");
+}
+
+FrameRange parse_frames(const std::string& text) {
+    const std::size_t colon = text.find(':'), slash = text.find('/');
+    if (colon == std::string::npos || (slash != std::string::npos && slash < colon)) refuse_frames(text);
+    const std::string_view all = text;
+    FrameRange range;
+    range.first = range.begin = number_of(text, all.substr(0, colon));
+    range.last = range.end = number_of(text, all.substr(colon + 1, slash - colon - 1));
+    if (slash != std::string::npos) {
+        range.begin = 1;
+        range.end = number_of(text, all.substr(slash + 1));
+    }
+    if (range.first > range.last || range.first < range.begin || range.last > range.end) refuse_frames(text);
+    return range;
+}
+
+std::vector<Frame> frames_of(const FrameOptions& o, const View& view) {
+    if (o.turn && !o.camera_path.empty())
+        throw UserError("--turn and --camera-path both say where the camera is: leave one of them out");
+    if (!o.camera_path.empty()) return frames_on_path(o, view);
+    if (!o.turn)
+        throw UserError(fmt::format(
+            "--frames {}: all would be the same; give --turn DEGREES or --camera-path FILE as well", o.frames));
+    if (o.frames.empty()) throw UserError(fmt::format("--turn {}: give --frames A:B as well", *o.turn));
+    if (!(std::abs(*o.turn) <= kMostTurn))
+        throw UserError(fmt::format("--turn {}: must be -{}..{} degrees", *o.turn, kMostTurn, kMostTurn));
+    const FrameRange range = parse_frames(o.frames);
+    const double count = range.end - range.begin + 1.0;
+    std::vector<Frame> frames;
+    for (std::uint32_t n = range.first; n <= range.last; ++n)
+        frames.push_back({n, turned(view, *o.turn * (n - range.begin) / count)});
+    return frames;
+}
+
+std::string numbered(const std::string& file, std::uint32_t frame) {
+    if (file.empty()) return file;
+    const std::filesystem::path path = file;
+    const std::string extension = path.extension().string();
+    return fmt::format("{}-{:04}{}", file.substr(0, file.size() - extension.size()), frame, extension);
+}
+
+}  // namespace raya

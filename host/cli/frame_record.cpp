@@ -1,0 +1,111 @@
+#include "host/cli/frame_record.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "host/error.hpp"
+#include "host/files/bytes_hash.hpp"
+#include "host/files/read_file.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/version.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kKind = "raya frames";  // by which a record is known again
+
+std::optional<std::string> hash_of_file(const fs::path& file) try {
+    return bytes_hash(read_file(file));
+} catch (const UnreadableFile&) {
+    return {};
+}
+
+Json json_of(const FrameEntry& e) {
+    Json files = Json::list();
+    for (const auto& [name, hash] : e.files) files.push_back({{"name", name}, {"hash", hash}});
+    return {{"number", e.number},       {"settings", e.settings}, {"pixels", e.pixels},
+            {"imbalance", e.imbalance}, {"speed_up", e.speed_up}, {"files", files}};
+}
+
+FrameEntry entry_of(const Json& json) {
+    FrameEntry e{static_cast<std::uint32_t>(json.at("number").whole(UINT32_MAX)),
+                 json.at("settings").text(),
+                 json.at("pixels").text(),
+                 json.at("imbalance").number(),
+                 json.at("speed_up").number(),
+                 {}};
+    for (const Json& file : json.at("files").elements())
+        e.files.emplace_back(file.at("name").text(), file.at("hash").text());
+    return e;
+}
+
+std::vector<FrameEntry> entries_of(const std::string& text) {
+    const Json record = Json::parse(text);
+    if (record.at("kind").text() != kKind) throw JsonError("another kind");
+    std::vector<FrameEntry> entries;
+    for (const Json& frame : record.at("frames").elements()) entries.push_back(entry_of(frame));
+    return entries;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
+    throw UserError(fmt::format(
+        "{}: {}; it would be written over by the record of the frames: move it away, or give -o another name",
+        file.string(), why));
+}
+
+}  // namespace
+
+FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) {
+    if (!fs::exists(file_)) return;
+    try {
+        entries_ = entries_of(read_file(file_));
+    } catch (const UnreadableFile& why) {
+        refuse(file_, why.what());
+    } catch (const JsonSyntaxError&) {
+        refuse(file_, "no JSON");
+    } catch (const JsonError&) {
+        refuse(file_, "no record of frames");
+    }
+}
+
+const FrameEntry* FrameRecord::find(std::uint32_t number, const std::string& settings,
+                                    const std::vector<std::string>& files) const {
+    const auto entry = std::ranges::find(entries_, number, &FrameEntry::number);
+    if (entry == entries_.end() || entry->settings != settings || entry->files.size() != files.size()) return nullptr;
+    const bool there = std::ranges::all_of(files, [&](const std::string& file) {
+        const auto known = std::ranges::find(entry->files, name_of(file), &std::pair<std::string, std::string>::first);
+        return known != entry->files.end() && hash_of_file(file) == known->second;
+    });
+    return there ? &*entry : nullptr;
+}
+
+const FrameEntry& FrameRecord::add(FrameEntry entry, const std::vector<std::string>& files) {
+    for (const std::string& file : files) entry.files.emplace_back(name_of(file), bytes_hash(read_file(file)));
+    std::erase_if(entries_, [&](const FrameEntry& old) { return old.number == entry.number; });
+    const auto behind = std::ranges::upper_bound(entries_, entry.number, {}, &FrameEntry::number);
+    const auto added = entries_.insert(behind, std::move(entry));
+    write();
+    return *added;
+}
+
+std::string FrameRecord::name_of(const std::string& file) const {
+    return fs::absolute(file).lexically_normal().lexically_proximate(
+        fs::absolute(file_).parent_path().lexically_normal());
+}
+
+void FrameRecord::write() const {
+    Json frames = Json::list();
+    for (const FrameEntry& entry : entries_) frames.push_back(json_of(entry));
+    write_whole_file(file_, Json{{"kind", kKind}, {"raya", raya_version()}, {"frames", frames}}.dump(2) + "\n");
+}
+
+std::string frame_record_file(const std::string& image) {
+    const fs::path path = image;
+    return (path.parent_path() / (path.stem().string() + "-frames.json")).string();
+}
+
+}  // namespace raya

@@ -1,0 +1,47 @@
+// What is kept of a sequence's frames beside them, so that a sequence that was stopped goes on, and one that was
+// changed keeps no stale frame.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/files/json.hpp"
+
+namespace raya {
+
+/// One frame that was rendered.
+struct FrameEntry {
+    std::uint32_t number = 0;
+    std::string settings;                                    // a hash of all that the frame follows from
+    std::string pixels;                                      // pixel_hash() of the image
+    double imbalance = 0, speed_up = 0;                      // of the modelled loads
+    std::vector<std::pair<std::string, std::string>> files;  // name, seen from the record's folder; bytes_hash()
+};
+
+class FrameRecord {
+  public:
+    /// Reads `file`, where it is there. UserError where it is and is no record.
+    explicit FrameRecord(std::filesystem::path file);
+
+    /// The entry of that frame, if it was rendered by these settings and `files` lie there as they were written; else a
+    /// null pointer.
+    const FrameEntry* find(std::uint32_t number, const std::string& settings,
+                           const std::vector<std::string>& files) const;
+
+    /// Takes in a frame whose files have been written, `entry.files` aside, in place of an older one, and writes the
+    /// record.
+    const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
+
+  private:
+    std::string name_of(const std::string& file) const;
+    void write() const;
+
+    std::filesystem::path file_;
+    std::vector<FrameEntry> entries_;  // by their numbers
+};
+
+/// Where the record of the frames of `image` lies: "turn-frames.json" of turn.png.
+std::string frame_record_file(const std::string& image);
+
+}  // namespace raya

@@ -1,0 +1,143 @@
+// raya render --frames: numbered images of one scene, a camera for each.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "host/cli/frame_record.hpp"
+#include "host/cli/render_command.hpp"
+#include "host/error.hpp"
+#include "host/files/bytes_hash.hpp"
+#include "host/files/say.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/scene/nff_writer.hpp"
+
+namespace raya {
+namespace {
+
+// The command of one frame: as the whole one, into files of its own.
+RenderCommand command_of(const RenderCommand& all, std::uint32_t frame) {
+    RenderCommand one = all;
+    for (std::string* file : {&one.image, &one.cost, &one.mask, &one.report}) *file = numbered(*file, frame);
+    one.summary = false;
+    return one;
+}
+
+std::vector<std::string> files_of(const RenderCommand& one) {
+    std::vector<std::string> files = {one.image, one.cost, one.mask, one.report};
+    std::erase(files, std::string());
+    return files;
+}
+
+// All that a frame follows from beside its camera: the scene and its lights, what was asked for, the program.
+std::string settings_of(const CLI::App& parsed, const Scene& scene) {
+    static const std::set<std::string> kOther = {"SCENE",  "--output", "--cost",        "--mask",  "--report",
+                                                 "--turn", "--frames", "--camera-path", "--quiet", "--verbose"};
+    std::string text = raya_version();
+    for (const CLI::Option* option : parsed.get_options())
+        if (option->count() > 0 && !kOther.contains(option->get_name()))
+            text += fmt::format("\n{} {}", option->get_name(), fmt::join(option->results(), " "));
+    const char* const build = std::getenv("RAYA_BUILD_OPTIONS");
+    Scene objects = scene;
+    objects.view = {};
+    return fmt::format("{}\n{}\n{}\n{}", text, build != nullptr ? build : "", scene.name,
+                       bytes_hash(write_nff(objects)));
+}
+
+std::string settings_hash(const std::string& settings, const Scene& scene) {
+    return bytes_hash(
+        fmt::format("{}\n{}x{}\n{}", settings, scene.view.width, scene.view.height, view_json(scene).dump()));
+}
+
+FrameEntry entry_of(const RenderReport& report, std::uint32_t number, const std::string& settings) {
+    return {number, settings, report.image.hash, report.load.imbalance, report.load.speedup, {}};
+}
+
+void tell(const RenderCommand& one, const FrameEntry& frame, bool recorded) {
+    if (one.quiet) return;
+    clear_status();
+    fmt::print("frame {:4}  u {:.3f}  speed-up {:7.1f}  {}  {}{}\n", frame.number, frame.imbalance, frame.speed_up,
+               frame.pixels, one.image, recorded ? ", as recorded" : "");
+    std::fflush(stdout);  // how far it has come shows in a log too
+}
+
+struct Sums {
+    std::size_t frames = 0, rendered = 0;
+    double least = 0, most = 0, sum = 0;
+
+    void add(double imbalance, bool now) {
+        least = frames == 0 ? imbalance : std::min(least, imbalance);
+        most = std::max(most, imbalance);
+        sum += imbalance;
+        ++frames;
+        rendered += now;
+    }
+};
+
+void tell(const RenderCommand& command, const Sums& sums, const std::string& record) {
+    if (command.quiet) return;
+    fmt::print("{} frames, {} rendered, {} as recorded in {}; u {:.3f} to {:.3f}, {:.3f} in the mean\n", sums.frames,
+               sums.rendered, sums.frames - sums.rendered, record, sums.least, sums.most,
+               sums.sum / static_cast<double>(sums.frames));
+}
+
+}  // namespace
+
+void check_frames(const RenderCommand& command) {
+    if (is_standard_stream(command.image))
+        throw UserError("-o -: frames are many files, which stdout cannot hold; name one, which gets their numbers");
+    const std::pair<const char*, bool> of_one_image[] = {{"--page", !command.page.empty()},
+                                                         {"--trace", !command.trace.file.empty()},
+                                                         {"--profile", command.profile},
+                                                         {"--packets", !command.torus.packets.empty()},
+                                                         {"--replay", !command.torus.replay.empty()}};
+    for (const auto& [option, given] : of_one_image)
+        if (given)
+            throw UserError(fmt::format(
+                "{} is of one image: render that frame by itself, from where its report's view says (--report)",
+                option));
+    check_writable(frame_record_file(command.image));
+}
+
+void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run) {
+    Ranks& ranks = run.ranks;
+    std::vector<Frame> frames;
+    std::optional<FrameRecord> record;
+    std::string settings;
+    if (ranks.first()) {
+        frames = frames_of(command.frames, run.input.scene.view);
+        for (const Frame& frame : {frames.front(), frames.back()}) check_targets(command_of(command, frame.number));
+        record.emplace(frame_record_file(command.image));
+        settings = settings_of(parsed, run.input.scene);
+    }
+    auto count = static_cast<std::uint32_t>(frames.size());
+    ranks.broadcast(count);
+    frames.resize(count);
+    run.progress.begin_images(frames.size());
+    Sums sums;
+    for (const Frame& frame : frames) {
+        const RenderCommand one = command_of(command, frame.number);
+        if (ranks.first()) run.input.scene.view = frame.view;
+        const std::string hash = ranks.first() ? settings_hash(settings, run.input.scene) : "";
+        // Kernels that are being developed may have changed.
+        const bool may_be_there = ranks.first() && command.render.kernel_dir.empty();
+        const FrameEntry* there = may_be_there ? record->find(frame.number, hash, files_of(one)) : nullptr;
+        std::uint32_t renders = there == nullptr;
+        ranks.broadcast(renders);
+        if (renders != 0) {
+            const std::optional<RenderReport> report = render_image(one, run);
+            if (report) there = &record->add(entry_of(*report, frame.number, hash), files_of(one));
+        }
+        if (there != nullptr) {
+            tell(one, *there, renders == 0);
+            sums.add(there->imbalance, renders != 0);
+        }
+        run.progress.next_image();
+    }
+    if (ranks.first()) tell(command, sums, frame_record_file(command.image));
+}
+
+}  // namespace raya

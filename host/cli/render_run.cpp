@@ -1,0 +1,55 @@
+#include "host/cli/render_run.hpp"
+
+#include <fmt/core.h>
+
+#include "host/cl/device.hpp"
+#include "host/cli/render_command.hpp"
+
+namespace raya {
+
+void RenderProgress::stage(const std::string& what) {
+    if (bar_ && images_ == 0) bar_->stage(what);
+}
+
+void RenderProgress::begin_images(std::size_t count) {
+    images_ = count;
+    done_ = 0;
+    if (bar_) bar_->stage(fmt::format("{} frames", count));
+}
+
+void RenderProgress::next_image() {
+    ++done_;
+    if (bar_ && images_ > 0) bar_->update(static_cast<double>(done_) / static_cast<double>(images_));
+}
+
+ProgressCallback RenderProgress::callback() {
+    if (!bar_ || !bar_->active()) return {};
+    if (images_ == 0) return [this](double share) { bar_->update(share); };
+    return [this](double share) { bar_->update((static_cast<double>(done_) + share) / static_cast<double>(images_)); };
+}
+
+void RenderProgress::end() {
+    if (images_ == 0) bar_.reset();
+}
+
+RenderRun::RenderRun(const RenderCommand& command, Ranks& of)
+    : ranks(of),
+      watch(command.trace, command.roofline()),
+      progress(!command.quiet && of.first(), "reading the scene"),
+      options(command.render),
+      input(read_scene_once(watch, options, of)),
+      timing_(command.timing()),
+      many_(command.frames.given()) {}
+
+Session& RenderRun::session() {
+    if (session_) return *session_;
+    tuned_.reset(new TunedUse(use_tuned(options.no_tuned, &input.warnings)));
+    progress.stage("preparing");
+    device_ = watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
+    session_.emplace(watch.steps().during("open device", [&] { return Session(device_, timing_); }));
+    if (many_) session_->keep_programs();
+    watch.observe(*session_, ranks);
+    return *session_;
+}
+
+}  // namespace raya

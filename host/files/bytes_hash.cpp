@@ -1,0 +1,16 @@
+#include "host/files/bytes_hash.hpp"
+
+#include <xxhash.h>
+
+namespace raya {
+
+std::string bytes_hash(std::string_view bytes) {
+    XXH128_canonical_t canonical;
+    XXH128_canonicalFromHash(&canonical, XXH3_128bits(bytes.data(), bytes.size()));
+    std::string text;
+    for (const unsigned char byte : canonical.digest)
+        for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
+    return text;
+}
+
+}  // namespace raya

@@ -1,0 +1,11 @@
+// By what files and texts are known again.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace raya {
+
+/// XXH3 of 128 bits, as 32 lower-case hexadecimal digits.
+std::string bytes_hash(std::string_view bytes);
+
+}  // namespace raya

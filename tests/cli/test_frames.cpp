@@ -1,0 +1,250 @@
+// Sequences of images: which frames, which cameras, what is rendered again and what is not.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <map>
+
+#include "host/cli/camera_path.hpp"
+#include "host/cli/frame_options.hpp"
+#include "host/error.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST_CASE("ranges of frames", "[cli][frames]") {
+    CHECK(parse_frames("1:24") == FrameRange{1, 24, 1, 24});
+    CHECK(parse_frames("0:0") == FrameRange{0, 0, 0, 0});
+    CHECK(parse_frames("5:8/24") == FrameRange{5, 8, 1, 24});
+    for (const char* text : {"", "1", ":", "1:", ":2", "2:1", "1:2:3", "-1:2", "1:1000000", "0:3/8", "5:9/8", "1:2/",
+                             "1/2:3", "1.5:2", " 1:2", "1:2x"}) {
+        CAPTURE(text);
+        CHECK_THROWS_AS(parse_frames(text), UserError);
+    }
+    CHECK(numbered("a/turn.png", 7) == "a/turn-0007.png");
+    CHECK(numbered("turn", 12345) == "turn-12345");
+    CHECK(numbered("a.b/turn.tar.exr", 1) == "a.b/turn.tar-0001.exr");
+    CHECK(numbered("", 1).empty());
+}
+
+TEST_CASE("a turn's frames are equal steps, whichever of them are asked for", "[cli][frames]") {
+    const View view = read_nff(scene_file("centre")).view;
+    const auto frames = [&](const char* range) { return frames_of({range, "", 360.0}, view); };
+    const std::vector<Frame> all = frames("1:24"), some = frames("7:9/24"), from_zero = frames("0:23");
+    REQUIRE(all.size() == 24);
+    REQUIRE(some.size() == 3);
+    CHECK(all.front().view == view);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        CHECK(some[i].number == 7 + i);
+        CHECK(some[i].view == all[6 + i].view);
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) CHECK(from_zero[i].view == all[i].view);
+    const Vec3 arm = view.from - view.at, opposite = all[12].view.from - view.at;
+    CHECK((opposite + arm).dot(view.up) == Approx(2 * arm.dot(view.up)));
+    CHECK((opposite - (view.up * (2 * arm.dot(view.up) / view.up.dot(view.up)) - arm)).length() < 1e-12);
+}
+
+TEST_CASE("a path has a camera in each line", "[cli][frames]") {
+    const ScratchFolder folder;
+    const std::string path = folder / "path.txt";
+    View view;
+    view.from = {9, 9, 9};
+    write_whole_file(
+        path, "# a walk\n\nfrom 1,2,3 at 0,0,0 up 0,0,1 angle 40\n  angle 30   # closer\r\nat 5,5,5\tfrom 1,1,1");
+    const std::vector<View> cameras = read_camera_path(path, view);
+    REQUIRE(cameras.size() == 3);
+    CHECK(cameras[0].from == Vec3(1, 2, 3));
+    CHECK(cameras[0].up == Vec3(0, 0, 1));
+    CHECK(cameras[1].angle_degrees == 30);
+    CHECK(cameras[1].from == view.from);
+    CHECK(cameras[2].at == Vec3(5, 5, 5));
+    const auto numbers = [&](const char* range) {
+        std::vector<std::uint32_t> all;
+        for (const Frame& frame : frames_of({range, path, {}}, view)) all.push_back(frame.number);
+        return all;
+    };
+    CHECK(numbers("") == std::vector<std::uint32_t>{1, 2, 3});
+    CHECK(numbers("2:3") == std::vector<std::uint32_t>{2, 3});
+    CHECK_THROWS_WITH(numbers("2:4"), Catch::Contains("has 3 cameras"));
+    CHECK_THROWS_AS(numbers("0:2"), UserError);
+    const std::pair<const char*, const char*> wrong[] = {{"from 1,2", "line 1: --from 1,2: must be"},
+                                                         {"\nfrom", "line 2: from has no value"},
+                                                         {"to 1,2,3", "line 1: to: must be from"},
+                                                         {"angle x", "line 1: angle x: must be a number"},
+                                                         {"angle 180", "line 1: --angle 180"},
+                                                         {"", "no camera"},
+                                                         {"from 1,1,1 at 1,1,1", "line 1: --from 1,1,1 --at 1,1,1"}};
+    for (const auto& [text, message] : wrong) {
+        CAPTURE(text);
+        write_whole_file(path, text);
+        CHECK_THROWS_WITH(read_camera_path(path, view), Catch::Contains(message));
+    }
+    CHECK_THROWS_WITH(read_camera_path(folder / "none.txt", view), Catch::Contains("--camera-path"));
+}
+
+/// A small sequence in a folder of its own.
+class Sequence {
+  public:
+    Words words(const Words& more = {}) const {
+        Words all = {"render", scene_file("centre"), "--size", "16x12", "--pes", "16", "--lanes", "4",
+                     "-o",     folder_ / "t.ppm",    "--turn", "360"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+
+    /// Runs it, and tells how many frames were rendered.
+    int rendered(const Words& more) const {
+        const Outcome run = run_raya(words(more));
+        INFO(run.told());
+        REQUIRE(run.code == 0);
+        CHECK(run.err.empty());
+        const std::size_t at = run.out.find(" frames, ");
+        REQUIRE(at != std::string::npos);
+        return std::stoi(run.out.substr(at + 9));
+    }
+
+    std::string file(const std::string& name) const { return folder_ / name; }
+    const ScratchFolder& folder() const { return folder_; }
+    std::string bytes(int frame) const { return file_contents(file(fmt::format("t-{:04}.ppm", frame))); }
+    Document record() const { return Document::parse(file_contents(file("t-frames.json"))); }
+
+  private:
+    ScratchFolder folder_;
+};
+
+TEST_CASE("frames are the pictures that single renders make, and are not made twice", "[cli][frames]") {
+    const Sequence s;
+    REQUIRE(s.rendered({"--frames", "1:4"}) == 4);
+    CHECK(s.folder().entries() == 5);
+    Words single = s.words();
+    single.resize(single.size() - 2);  // no turn
+    REQUIRE(run_raya(single).code == 0);
+    CHECK((file_contents(s.file("t.ppm")) == s.bytes(1)));
+    CHECK((s.bytes(2) != s.bytes(1)));
+    const Document record = s.record();
+    REQUIRE(record["frames"].size() == 4);
+    CHECK(record["frames"][0]["number"] == 1);
+    CHECK(record["frames"][1]["imbalance"] > 0);
+
+    CHECK(s.rendered({"--frames", "1:4"}) == 0);
+    CHECK(s.rendered({"--frames", "2:3/4"}) == 0);
+    CHECK(s.rendered({"--frames", "0:3"}) == 4);  // other places for the same numbers
+    CHECK(s.rendered({"--frames", "1:4"}) == 3);  // 0 is kept; 1 to 3 had moved
+    CHECK(s.record()["frames"].size() == 5);
+    CHECK(s.rendered({"--frames", "1:8"}) == 7);  // frame 1 stands where it stood
+}
+
+TEST_CASE("what is changed is rendered again, and only that", "[cli][frames]") {
+    const Sequence s;
+    const Words frames = {"--frames", "1:3"};
+    REQUIRE(s.rendered(frames) == 3);
+    const std::string second = s.bytes(2);
+    write_whole_file(s.file("t-0002.ppm"), "P6 1 1 255\nabc");
+    CHECK(s.rendered(frames) == 1);
+    CHECK((s.bytes(2) == second));
+    fs::remove(s.file("t-0003.ppm"));
+    CHECK(s.rendered(frames) == 1);
+    for (const Words& changed : {Words{"--bounces", "2"}, Words{"--exposure", "1"}, Words{"--from", "5,-9,4"},
+                                 Words{"--light", "1,1,9"}, Words{"--mapping", "rows"}, Words{"--strict"},
+                                 Words{"--report", s.file("t.json")}, Words{"--cost", s.file("c.pfm")}}) {
+        Words words = frames;
+        words.insert(words.end(), changed.begin(), changed.end());
+        CAPTURE(changed.front());
+        CHECK(s.rendered(words) == 3);
+        CHECK(s.rendered(words) == 0);
+    }
+    CHECK(fs::exists(s.file("t-0002.json")));
+    CHECK(fs::exists(s.file("c-0003.pfm")));
+    const Document report = Document::parse(file_contents(s.file("t-0002.json")));
+    CHECK(report["image"]["file"] == s.file("t-0002.ppm"));
+}
+
+TEST_CASE("another scene of the same name is rendered anew", "[cli][frames]") {
+    const Sequence s;
+    const std::string scene = s.file("scene.nff");
+    fs::copy_file(scene_file("spheres"), scene);
+    Words words = s.words({"--frames", "1:2"});
+    words[1] = scene;
+    const auto out = [&] { return run_raya(words).out; };
+    CHECK_THAT(out(), Catch::Contains("2 frames, 2 rendered"));
+    CHECK_THAT(out(), Catch::Contains("2 frames, 0 rendered"));
+    fs::remove(scene);
+    fs::copy_file(scene_file("centre"), scene);
+    CHECK_THAT(out(), Catch::Contains("2 frames, 2 rendered"));
+}
+
+TEST_CASE("kernels that are being developed are never as recorded", "[cli][frames]") {
+    const Sequence s;
+    const Words words = {"--frames", "1:2", "--kernel-dir", RAYA_SOURCE_DIR "/kernels"};
+    CHECK(s.rendered(words) == 2);
+    CHECK(s.rendered(words) == 2);
+}
+
+TEST_CASE("a sequence that was stopped goes on", "[cli][frames]") {
+    const Sequence whole, stopped;
+    const Words frames = {"--frames", "1:60"};
+    REQUIRE(whole.rendered(frames) == 60);
+    Surroundings interrupted;
+    interrupted.signal = SIGINT;
+    interrupted.signal_after_ms = 400;
+    const Outcome run = run_raya(stopped.words(frames), interrupted);
+    INFO(run.told());
+    REQUIRE((run.code == 128 + SIGINT || run.code == 0));
+    const int left = stopped.rendered(frames);
+    CHECK((run.code == 0) == (left == 0));
+    for (int frame = 1; frame <= 60; ++frame) {
+        CAPTURE(frame);
+        CHECK((stopped.bytes(frame) == whole.bytes(frame)));
+    }
+}
+
+TEST_CASE("frames of the torus", "[cli][frames]") {
+    const Sequence s;
+    const Words torus = {"--frames", "1:2", "--machine", "torus", "--nodes", "2x2x1"};
+    Words words = s.words(torus);
+    std::erase_if(words, [](const std::string& word) { return word == "--pes"; });
+    words.erase(std::find(words.begin(), words.end(), "16"));
+    const auto out = [&] { return run_raya(words).out; };
+    CHECK_THAT(out(), Catch::Contains("2 frames, 2 rendered"));
+    CHECK_THAT(out(), Catch::Contains("2 frames, 0 rendered"));
+}
+
+TEST_CASE("what cannot be a sequence is refused before anything is rendered", "[cli][frames]") {
+    const ScratchFolder outputs;
+    const std::string image = outputs / "t.ppm";
+    const auto refused = [&](const Words& options, const Words& message) {
+        Words words = {"render", scene_file("centre"), "-o", image, "--size", "8"};
+        words.insert(words.end(), options.begin(), options.end());
+        check_refused(outputs, words, 2, message);
+    };
+    refused({"--frames", "1:4"}, {"--frames 1:4", "--turn"});
+    refused({"--turn", "90"}, {"--turn 90", "--frames"});
+    refused({"--frames", "4:1", "--turn", "90"}, {"--frames 4:1", "A:B"});
+    refused({"--frames", "1:4", "--turn", "1e9"}, {"--turn", "360000"});
+    refused({"--frames", "1:4", "--turn", "nan"}, {"--turn"});
+    refused({"--frames", "1:4", "--camera-path", "p", "--turn", "90"}, {"leave one of them out"});
+    refused({"--frames", "1:4", "--camera-path", outputs / "none"}, {"--camera-path", "none"});
+    for (const Words& single : {Words{"--page", outputs / "p.html"}, Words{"--trace", outputs / "t.json"},
+                                Words{"--profile"}, Words{"--machine", "torus", "--packets", outputs / "p.csv.gz"}}) {
+        Words options = {"--frames", "1:4", "--turn", "90"};
+        options.insert(options.end(), single.begin(), single.end());
+        refused(options, {"is of one image"});
+    }
+    check_refused(outputs, {"render", scene_file("centre"), "-o", "-", "--frames", "1:4", "--turn", "90"}, 2,
+                  {"-o -", "many files"});
+    const ScratchFolder other;
+    write_whole_file(other / "t-frames.json", "{\"kind\": \"mine\"}");
+    const Outcome run =
+        run_raya({"render", scene_file("centre"), "-o", other / "t.ppm", "--frames", "1:4", "--turn", "90"});
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Catch::Contains("no record of frames"));
+    CHECK(other.entries() == 1);
+}
+
+}  // namespace
+}  // namespace raya
