@@ -22,6 +22,8 @@ std::span<const Study> studies() {
         {"static-vs-dynamic", "Static mappings against dynamic and hybrid distribution", false,
          study_static_vs_dynamic},
         {"best-offset", "The best offset for your scene, communication in the balance", false, study_best_offset},
+        {"turn", "Balance over a turn of the camera: u of every frame, and whether one offset holds", false,
+         study_turn},
         {"divisions", "Time of one machine against the number of voxels, 64 to 1024 even spheres", false,
          study_divisions},
         {"havran", "Intersection tests and steps a ray in uniform grids, balls and lattice", false, study_havran},

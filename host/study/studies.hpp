@@ -52,7 +52,7 @@ StudyPage images_page(std::uint32_t pes, const std::vector<const Costs*>& images
                       const std::vector<ImageGroup>& more = {});
 
 // Beyond the paper.
-StudyFunction study_bus, study_lattice, study_scale, study_static_vs_dynamic, study_best_offset;
+StudyFunction study_bus, study_lattice, study_scale, study_static_vs_dynamic, study_best_offset, study_turn;
 
 /// `scenes`: square images of one size, 16 pixels a side or more, one scene at least; one without views stands for
 /// itself.
