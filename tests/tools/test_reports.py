@@ -17,6 +17,7 @@ from report_schema import read_schemas
 try:
     import jsonschema
 except ImportError:
+    print("skipped: this Python has no jsonschema (Debian: python3-jsonschema)")
     sys.exit(77)
 warnings.simplefilter("ignore", DeprecationWarning)  # RefResolver, which Debian's version needs, is old in later ones
 
