@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "host/cl/error_names.hpp"
+#include "host/files/verbosity.hpp"
 
 namespace raya {
 namespace {
@@ -35,6 +37,16 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
     });
 }
 
+Session::~Session() {
+    if (!queue_ || !profile_.timed() || verbosity() < kDetailed || std::uncaught_exceptions() > 0) return;
+    try {
+        for (const LabelSummary& label : profile().summary())
+            tell(kDetailed, fmt::format("on the device: {} ({}) x {}: {:.3f} ms", label.label, label.kind,
+                                        label.launches, 1e-6 * static_cast<double>(label.total_ns)));
+    } catch (const std::exception&) {  // the render's own end has said what matters
+    }
+}
+
 Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
     std::vector<std::string> all = options;
@@ -42,7 +54,10 @@ Program Session::build(const std::string& name, const std::string& source,
     if (const char* more = std::getenv("RAYA_BUILD_OPTIONS"); more != nullptr && *more != '\0') all.emplace_back(more);
     const auto build = [&] {
         const StepLog::Step building = step("build " + name);
-        return Program(context_, device_, name, source, all);
+        Program program(context_, device_, name, source, all);
+        tell(kDetailed, fmt::format("build {}: options {}", name, program.options()));
+        tell(kDetailed, program.log());
+        return program;
     };
     if (!kept_programs_) return build();
     const auto known = kept_programs_->find({all, source});

@@ -11,6 +11,7 @@
 #include "host/cl/driver_cache.hpp"
 #include "host/cl/driver_call.hpp"
 #include "host/cl/error_names.hpp"
+#include "host/files/verbosity.hpp"
 
 namespace raya {
 namespace {
@@ -189,7 +190,10 @@ cl::Device choose_device(const std::string& name_part, std::size_t turn) {
     for (const cl::Device& device : devices) infos.push_back(device_info(device));
     const char* fallback = std::getenv("RAYA_DEVICE");
     const std::string wanted = name_part.empty() && fallback != nullptr ? fallback : name_part;
-    return devices[device_index(wanted, infos, turn)];
+    const std::size_t index = device_index(wanted, infos, turn);
+    tell(kVerbose, fmt::format("device {}: {} ({}, {}, driver {})", index, infos[index].name, infos[index].platform,
+                               infos[index].version, infos[index].driver));
+    return devices[index];
 }
 
 }  // namespace raya

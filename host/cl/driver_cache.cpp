@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "host/files/say.hpp"
+#include "host/files/verbosity.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;
@@ -39,9 +39,8 @@ void provide_driver_cache() {
     fs::permissions(own, fs::perms::owner_all, error);
     if (error || ::access(own.c_str(), W_OK | X_OK) != 0) return;
     ::setenv("POCL_CACHE_DIR", own.c_str(), 1);
-    say(fmt::format(
-        "raya: warning: {} may not be written: PoCL keeps its kernels in {}; POCL_CACHE_DIR names another place\n",
-        usual.string(), own.string()));
+    warn(fmt::format("warning: {} may not be written: PoCL keeps its kernels in {}; POCL_CACHE_DIR names another place",
+                     usual.string(), own.string()));
 }
 
 }  // namespace raya

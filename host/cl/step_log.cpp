@@ -1,6 +1,10 @@
 #include "host/cl/step_log.hpp"
 
+#include <fmt/core.h>
+
 #include <ctime>
+
+#include "host/files/verbosity.hpp"
 
 namespace raya {
 
@@ -12,12 +16,18 @@ std::uint64_t host_clock_ns() {
 }
 
 StepLog::Step::Step(StepLog* log, const std::string& name) : log_(log) {
+    if (verbosity() >= kVerbose) {
+        told_ = name;
+        started_ = host_clock_ns();
+    }
     if (log_ == nullptr) return;
     number_ = log_->steps_.size();
     log_->steps_.push_back({name, host_clock_ns(), 0, log_->depth_++});
 }
 
 StepLog::Step::~Step() {
+    if (!told_.empty())
+        tell(kVerbose, fmt::format("{}: {:.3f} s", told_, 1e-9 * static_cast<double>(host_clock_ns() - started_)));
     if (log_ == nullptr) return;
     log_->steps_[number_].ended = host_clock_ns();
     --log_->depth_;

@@ -27,7 +27,8 @@ struct HostStep {
 
 class StepLog {
   public:
-    /// A step: from its making to the end of its scope. Without a log it does nothing.
+    /// A step: from its making to the end of its scope, and told then to who wants to know (host/files/verbosity.hpp).
+    /// Without a log it does nothing else.
     class Step {
       public:
         Step(StepLog* log, const std::string& name);
@@ -38,6 +39,8 @@ class StepLog {
       private:
         StepLog* log_;
         std::size_t number_ = 0;
+        std::string told_{};  // its name, where it will be told
+        std::uint64_t started_ = 0;
     };
 
     /// What `action` returns; the step is all that it does.

@@ -12,6 +12,7 @@
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/bench_tune.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
@@ -272,7 +273,12 @@ void bench(const CLI::App& parsed, BenchCommand command) {
 void add_bench_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("bench", "Measure rays per second by kernel, lanes and format on this device");
+    add_examples(*command, {{"raya bench --size 256 --report today.json",
+                             "Rates of fp32 and e6m15 at all widths of lanes, kept for a later comparison"},
+                            {"raya bench scenes/centre.nff --size 128 --samples 3 --ways none,bvh",
+                             "Whole renders of a scene, every ray against all objects and down a tree of boxes"}});
     const auto options = std::make_shared<BenchCommand>();
+    OptionGroup group(*command, "What is measured");
     add_value(*command, "SCENE", options->render.scene,
               "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512")
         ->type_name("SCENE.nff");
@@ -298,6 +304,7 @@ void add_bench_command(CLI::App& program) {
               "Samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")
         ->capture_default_str();
+    group.next("Report and comparison");
     add_value(*command, "--report", options->report,
               "Write the rows, for a later --compare; -: stdout, and the tables on stderr")
         ->type_name("FILE.json");

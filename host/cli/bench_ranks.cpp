@@ -48,7 +48,7 @@ using Rows = std::vector<RankRow>;
 
 // What render is given beside scene and size: all that was given to bench and is not its own.
 Words passed_on(const CLI::App& parsed) {
-    std::set<std::string> own = {"help", "size", "samples", "report", "ranks"};
+    std::set<std::string> own = {"help", "size", "samples", "report", "ranks", "quiet", "verbose"};
     own.insert(view_option_names().begin(), view_option_names().end());  // in the scene's file
     Words words;
     for (const CLI::Option* option : parsed.get_options()) {

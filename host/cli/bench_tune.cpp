@@ -1,7 +1,6 @@
 #include "host/cli/bench_tune.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include "host/error.hpp"
 #include "host/files/say.hpp"
 #include "host/files/utc_time.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/table.hpp"
 #include "host/tune/store.hpp"
@@ -26,8 +26,8 @@ namespace raya {
 namespace {
 
 constexpr std::array kTuneOnly = {"--exhaustive", "--seconds", "--candidate-seconds"};
-constexpr std::array kAlsoWithTune = {"SCENE",  "--strict", "--size",   "--pes",        "--format",
-                                      "--ways", "--device", "--report", "--kernel-dir", "--tune"};
+constexpr std::array kAlsoWithTune = {"SCENE",    "--strict", "--size",       "--pes",  "--format", "--ways",
+                                      "--device", "--report", "--kernel-dir", "--tune", "--quiet",  "--verbose"};
 
 bool is_one_of(const auto& names, const std::string& name) {
     return std::find(names.begin(), names.end(), std::string_view(name)) != names.end();
@@ -63,6 +63,7 @@ std::vector<std::string> trial_arguments(const RenderOptions& render) {
     add("--pes", render.pes ? std::to_string(*render.pes) : "");
     add("--device", render.device);
     add("--kernel-dir", render.kernel_dir);
+    for (const std::string& word : verbosity_words()) all.push_back(word);
     all.emplace_back("--tune-trial");
     return all;
 }
@@ -80,9 +81,9 @@ void run_as_trial(const RenderOptions& render, const TuneCommand& tune) {
 }
 
 TuneSink sink_for(const Workload& workload, const Space& space) {
-    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    const bool shows = shows_progress();
     return {.running = [=](const TunedValues& values, double seconds) {
-        if (terminal)
+        if (shows)
             show_status(fmt::format("tuning {}: {} ... {:.0f} s", workload.name(), change_text(space, values, values),
                                     seconds));
     }};
@@ -144,6 +145,7 @@ TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
 }  // namespace
 
 void add_tune_options(CLI::App& bench, TuneCommand& tune) {
+    const OptionGroup group(bench, "Tuning");
     bench.add_flag(
         "--tune", tune.wanted,
         "Search lanes, group and what else only changes the time, for this device: on the ring without accelerator in "

@@ -1,7 +1,9 @@
 #include "host/cli/command_tree.hpp"
 
+#include <algorithm>
 #include <sstream>
 
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 
 namespace raya {
@@ -38,6 +40,7 @@ CommandText text_of(const CLI::App& command) {
     CommandText text;
     text.name = command.get_name();
     text.summary = command.get_description();
+    text.examples = examples_of(command);
     text.footer = command.get_footer();
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_group().empty()) continue;
@@ -45,6 +48,8 @@ CommandText text_of(const CLI::App& command) {
         auto& readable = *const_cast<CLI::Option*>(option);
         (option->get_positional() ? text.words : text.options).push_back(option_text(readable));
     }
+    std::stable_partition(text.options.begin(), text.options.end(),
+                          [](const OptionText& option) { return option.group != kCommonOptions; });
     for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; }))
         if (!one->get_group().empty()) text.commands.push_back(text_of(*one));
     return text;

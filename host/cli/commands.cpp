@@ -14,7 +14,10 @@
 #include <vector>
 
 #include "host/cl/driver_call.hpp"
+#include "host/cli/help_formatter.hpp"
+#include "host/cli/options.hpp"
 #include "host/cli/parse_failure.hpp"
+#include "host/cli/verbosity_options.hpp"
 #include "host/error.hpp"
 #include "host/files/interruption.hpp"
 #include "host/files/say.hpp"
@@ -105,11 +108,36 @@ void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
 }
 
 int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
-    CLI::App program{"raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.",
-                     "raya"};
+    const std::shared_ptr<CLI::App> program = whole_program(ranks, build);
+    refuse_many_ranks(*program, ranks);
+    try {
+        return ranks.close(printed(ranks, parse_and_run(*program, ranks, argc, argv)));
+    } catch (const RankFailure& failure) {
+        return ranks.fail(failure);
+    }
+}
+
+// What fails before there are ranks fails in every process, and the first says it.
+int fail_at_start(const std::string& text, int code) {
+    const std::optional<Launch> launch = launched();
+    return !launch || launch->rank == 0 ? Ranks::alone().fail(text, code) : code;
+}
+
+}  // namespace
+
+std::shared_ptr<CLI::App> whole_program(Ranks& ranks, const std::string& build) {
+    auto made = std::make_shared<CLI::App>(
+        "raya traces rays on models of distributed-memory array machines, written as OpenCL kernels.", "raya");
+    CLI::App& program = *made;
+    program.formatter(std::make_shared<HelpFormatter>());  // commands take it when they are added
+    add_examples(program, {{"raya render scenes/centre.nff -o centre.png",
+                            "Render a scene on a ring of 256 PEs, and print how evenly they were loaded"},
+                           {"raya help render", "All that can be asked of a render"}});
     program.require_subcommand(1);
-    program.set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
-                             "Print version, commit and build");
+    program
+        .set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
+                          "Print version, commit and build")
+        ->group(kCommonOptions);
     program.footer(kExitCodes);
     add_render_command(program, ranks);
     add_explore_command(program);
@@ -123,22 +151,11 @@ int run_on(Ranks& ranks, int argc, char** argv, const std::string& build) {
     add_ping_command(program, ranks);
     add_manual_command(program);
     add_completion_command(program);
+    add_help_command(program);
     program.footer(std::string(kExitCodes) + kEnvironment);  // not of the commands, which take it when they are added
-    refuse_many_ranks(program, ranks);
-    try {
-        return ranks.close(printed(ranks, parse_and_run(program, ranks, argc, argv)));
-    } catch (const RankFailure& failure) {
-        return ranks.fail(failure);
-    }
+    add_verbosity_options(program, ranks);
+    return made;
 }
-
-// What fails before there are ranks fails in every process, and the first says it.
-int fail_at_start(const std::string& text, int code) {
-    const std::optional<Launch> launch = launched();
-    return !launch || launch->rank == 0 ? Ranks::alone().fail(text, code) : code;
-}
-
-}  // namespace
 
 int run_program(int argc, char** argv, const std::string& build) {
     open_standard_files();

@@ -1,5 +1,6 @@
 // The commands of raya. Each file of this folder adds one to the parser and runs it; nothing else knows them.
 #pragma once
+#include <memory>
 #include <string>
 
 namespace CLI {
@@ -21,6 +22,9 @@ struct CheckFailure {
 /// what --version says beside the version.
 int run_program(int argc, char** argv, const std::string& build);
 
+/// The parser of all commands, whose callbacks run them; `ranks` outlive it.
+std::shared_ptr<CLI::App> whole_program(Ranks& ranks, const std::string& build);
+
 void add_render_command(CLI::App& program, Ranks& ranks);
 void add_devices_command(CLI::App& program);
 void add_explore_command(CLI::App& program);
@@ -33,5 +37,6 @@ void add_verify_command(CLI::App& program);
 void add_ping_command(CLI::App& program, Ranks& ranks);
 void add_manual_command(CLI::App& program);
 void add_completion_command(CLI::App& program);
+void add_help_command(CLI::App& program);
 
 }  // namespace raya

@@ -1,10 +1,9 @@
 // raya devices: every device of every platform, with what matters here.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
 #include "host/cl/device.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/error.hpp"
 #include "host/kernels/kernel_options.hpp"
 #include "host/report/table.hpp"
@@ -43,6 +42,8 @@ void list_devices() {
 void add_devices_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("devices", "List every OpenCL device of every platform, with what matters here");
+    add_examples(*command, {{"raya devices", "The devices that there are, with their numbers"},
+                            {"RAYA_DEVICE=cpu raya devices -v", "The same, and what is asked for on the way"}});
     command->callback(list_devices);
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/quoted.hpp"
@@ -17,6 +18,7 @@
 #include "host/explore/figures.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/standard_streams.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
@@ -28,7 +30,6 @@ namespace {
 struct ExploreCommand {
     RenderOptions render;
     std::string page;
-    bool quiet = false;
 };
 
 void check_page(const ExploreCommand& command) {
@@ -89,7 +90,7 @@ Exploration exploration_of(const ExploreCommand& command, const RingSettings& se
 
 void explore(const ExploreCommand& command) {
     check_page(command);
-    std::optional<ProgressBar> bar(std::in_place, !command.quiet, "reading the scene");
+    std::optional<ProgressBar> bar(std::in_place, true, "reading the scene");
     SceneInput input = read_scene(command.render.scene, command.render.strict);
     change_view(command.render.view, input.scene);
     check_explorable(image_size(command.render, input.scene));
@@ -107,7 +108,7 @@ void explore(const ExploreCommand& command) {
     const std::string page = explorer_html(exploration_of(command, settings, session.device(), result));
     write_whole_file(command.page, page);
     bar.reset();
-    if (command.quiet) return;
+    if (is_quiet()) return;
     const Load load = figures_of(result.cost(), settings.mapping, settings.machine).load;
     fmt::print("{}: {} x {} pixels, opens with {} on {} PEs: u = {:.3f}, speed-up {:.1f}\n",
                input_name(command.render.scene), settings.mapping.width, settings.mapping.height,
@@ -121,7 +122,12 @@ void explore(const ExploreCommand& command) {
 void add_explore_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "explore", "Render once, and write a page in which mapping, offset and number of PEs can be dragged");
+    add_examples(*command, {{"raya explore scenes/centre.nff -o centre.html",
+                             "A page that opens with the paper's machine: 256 PEs, cyclic mapping, offset 16"},
+                            {"raya explore scenes/mirrors.nff --size 128 --pes 64 --mapping blocks -o mirrors.html",
+                             "The same of another scene, which opens with 64 PEs and blocks of scan lines"}});
     const auto options = std::make_shared<ExploreCommand>();
+    const OptionGroup group(*command, kFiles);
     add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
         ->required()
         ->type_name("SCENE.nff");
@@ -134,7 +140,6 @@ void add_explore_command(CLI::App& program) {
         ->description(
             "The mapping that the page opens with: cyclic, cyclic:p, column, rows, blocks, grid:AxB, "
             "tiles:WxH, random:seed; the page has all of them; default: the machine's, cyclic on spa");
-    command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
     command->callback([options] { explore(*options); });
 }
 

@@ -45,6 +45,7 @@ std::vector<Frame> frames_on_path(const FrameOptions& o, const View& view) {
 }  // namespace
 
 void add_frame_options(CLI::App& command, FrameOptions& o) {
+    const OptionGroup group(command, "Frames");
     add_value(command, "--frames", o.frames,
               "Render frames A to B into numbered files, IMAGE-0001.png and so on, also those of --cost, --mask and "
               "--report; A:B/N: of a sequence from 1 to N. IMAGE-frames.json keeps what was rendered: frames whose "

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/files/progress.hpp"
@@ -32,8 +33,12 @@ void write_scene(const GenerateOptions& options, Make&& make) {
     write_whole_file(options.output, write_nff(scene));
 }
 
-CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help) {
+CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help,
+                   const std::vector<ExampleText>& examples) {
     CLI::App* kind = command.add_subcommand(name, help);
+    add_examples(*kind, examples);
+    kind->option_defaults()->group("Scene");
+    const OptionGroup group(*kind, kFiles);
     add_value(*kind, "-o,--output", options.output, "NFF file to write; -: stdout")->required()->type_name("SCENE.nff");
     return kind;
 }
@@ -42,18 +47,25 @@ CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::strin
 
 void add_generate_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("generate", "Write a scene made by a program");
+    add_examples(*command, {{"raya generate balls --level 2 -o balls.nff", "91 spheres as SPD's balls has them"},
+                            {"raya generate random 500 -o - | raya render - --size 128 -o random.png",
+                             "A scene made and rendered, without a file between"}});
     command->require_subcommand(1);
     const auto options = std::make_shared<GenerateOptions>();
 
     CLI::App* balls =
-        add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square");
+        add_kind(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square",
+                 {{"raya generate balls -o balls.nff", "SPD's own size: 7,381 spheres"},
+                  {"raya generate balls --level 1 -o ten.nff", "A sphere with nine around it"}});
     add_value(*balls, "--level", options->level, "Levels L below the largest sphere, 0..6 (4: 7,381 spheres)")
         ->type_name("LEVEL")
         ->capture_default_str();
     balls->callback([options] { write_scene(*options, [&] { return generate_balls(options->level); }); });
 
     CLI::App* lattice =
-        add_kind(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube");
+        add_kind(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube",
+                 {{"raya generate lattice -o lattice.nff", "SPD's own size: 2,197 spheres, 6,084 cylinders"},
+                  {"raya generate lattice --size 2 -o small.nff", "27 spheres, 54 cylinders"}});
     add_value(*lattice, "--size", options->size,
               "Cylinders N along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
         ->type_name("N")
@@ -62,7 +74,9 @@ void add_generate_command(CLI::App& program) {
         [options] { write_scene(*options, [&] { return generate_lattice(static_cast<int>(options->size)); }); });
 
     CLI::App* gears =
-        add_kind(*command, *options, "gears", "N^3 gear wheels that mesh: outlines of 144 vertices, in a cube");
+        add_kind(*command, *options, "gears", "N^3 gear wheels that mesh: outlines of 144 vertices, in a cube",
+                 {{"raya generate gears -o gears.nff", "As many triangles as SPD's gears: 36,610"},
+                  {"raya generate gears --size 1 -o wheel.nff", "One wheel"}});
     add_value(*gears, "--size", options->wheels,
               "Wheels N along an edge, 1..16 (4: 9,345 polygons = 36,610 triangles, as many as SPD's gears)")
         ->type_name("N")
@@ -71,7 +85,9 @@ void add_generate_command(CLI::App& program) {
         [options] { write_scene(*options, [&] { return generate_gears(static_cast<int>(options->wheels)); }); });
 
     CLI::App* uniform =
-        add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube");
+        add_kind(*command, *options, "uniform", "N matt spheres spread evenly over the voxels of a cube",
+                 {{"raya generate uniform 64 --voxels 4x4x4 -o even.nff", "One sphere in each of 64 voxels"},
+                  {"raya generate uniform 1000 --voxels 2x2x1 -o slab.nff", "250 spheres in each of four voxels"}});
     add_value(*uniform, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
     add_value(*uniform, "--voxels", options->voxels, "Voxels along x, y and z, 1..256 each, at most 1,048,576 together")
         ->type_name("XxYxZ")
@@ -86,7 +102,9 @@ void add_generate_command(CLI::App& program) {
     });
 
     CLI::App* random =
-        add_kind(*command, *options, "random", "N spheres anywhere in a cube, the same for the same seed");
+        add_kind(*command, *options, "random", "N spheres anywhere in a cube, the same for the same seed",
+                 {{"raya generate random 500 -o random.nff", "500 spheres"},
+                  {"raya generate random 500 --seed 2 -o other.nff", "500 other ones"}});
     add_value(*random, "N", options->count, "Spheres, 1..1000000")->type_name("COUNT")->required();
     add_value(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
@@ -95,14 +113,18 @@ void add_generate_command(CLI::App& program) {
         [options] { write_scene(*options, [&] { return generate_random(options->count, options->seed); }); });
 
     CLI::App* cluster = add_kind(*command, *options, "cluster",
-                                 "Seven spheres above a floor, as heavy and uneven as Kohata & Ito's figures have it");
+                                 "Seven spheres above a floor, as heavy and uneven as Kohata & Ito's figures have it",
+                                 {{"raya generate cluster -o cluster.nff", "The scene of raya study cluster"},
+                                  {"raya generate cluster --seed 2 -o other.nff", "Another of its kind"}});
     add_value(*cluster, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
         ->capture_default_str();
     cluster->callback([options] { write_scene(*options, [&] { return generate_cluster(options->seed); }); });
 
     CLI::App* centre =
-        add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre");
+        add_kind(*command, *options, "centre", "The main scene: glass and mirror spheres crowded about the centre",
+                 {{"raya generate centre -o centre.nff", "What scenes/centre.nff has"},
+                  {"raya generate centre -o - | raya info -", "Its objects, and which machines hold them"}});
     centre->callback([options] { write_scene(*options, [&] { return generate_centre(); }); });
 }
 

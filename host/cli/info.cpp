@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/scene_needs.hpp"
@@ -32,6 +33,7 @@ void add_options(CLI::App& command, InfoCommand& options) {
     add_value(command, "SCENE", options.render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
         ->required()
         ->type_name("SCENE.nff");
+    OptionGroup group(command, kFiles);
     command.add_flag("--json", options.json, "Print it as JSON, for programs");
     add_render_options(command, options.render);
     add_torus_options(command, options.torus);
@@ -86,6 +88,10 @@ void info(const CLI::App& parsed, const InfoCommand& command) {
 void add_info_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "info", "Tell what is in a scene and which machines can hold it, without rendering it or asking for a device");
+    add_examples(*command, {{"raya info scenes/centre.nff",
+                             "Objects, lights, extent, and which of all machines have room for them"},
+                            {"raya info scenes/polygons.nff --machine spa --pe-memory 8192 --json",
+                             "Whether a PE of 8 KB would hold the scene, as JSON"}});
     const auto options = std::make_shared<InfoCommand>();
     add_options(*command, *options);
     command->callback([command, options] { info(*command, *options); });

@@ -8,6 +8,7 @@
 
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
@@ -62,7 +63,11 @@ void run_completion(const CLI::App& program, const CompletionCommand& command) {
 void add_manual_command(CLI::App& program) {
     CLI::App* command =
         program.add_subcommand("manual", "Print a manual page, to be read by: raya manual COMMAND | man -l -");
+    add_examples(*command, {{"raya manual render | man -l -", "The page of a command, as man shows it"},
+                            {"mkdir -p man1 && raya manual -o man1",
+                             "All pages as files: man1/raya.1, man1/raya-render.1 and so on"}});
     const auto options = std::make_shared<ManualCommand>();
+    const OptionGroup group(*command, kFiles);
     add_value(*command, "COMMAND", options->command, "Whose page; default: the one of raya, which names the others")
         ->type_name("COMMAND");
     add_value(*command, "-o,--output", options->folder,
@@ -75,8 +80,14 @@ void add_completion_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "completion",
         "Print what completes commands, options and values in a shell; in bash: source <(raya completion bash)");
+    add_examples(*command,
+                 {{"source <(raya completion bash)", "Commands and options complete in this bash from now on"},
+                  {"raya completion zsh -o _raya", "A file for a folder of zsh's $fpath"}});
     const auto options = std::make_shared<CompletionCommand>();
-    add_value(*command, "SHELL", options->shell, "The shell")->required()->type_name("bash|zsh|fish");
+    const OptionGroup group(*command, kFiles);
+    add_value(*command, "SHELL", options->shell, "The shell: bash, zsh or fish")
+        ->required()
+        ->type_name("bash|zsh|fish");
     add_value(*command, "-o,--output", options->file, "Write it to a file")->type_name("FILE");
     command->callback([options, &program] { run_completion(program, *options); });
 }

@@ -41,6 +41,35 @@ void check_value(const std::string& option, const std::string& text, const std::
     }
 }
 
+// Headings below which help shows options, in the commands that have them.
+inline constexpr const char* kFiles = "Files";
+inline constexpr const char* kPicture = "Picture";
+inline constexpr const char* kCamera = "Camera and light";
+inline constexpr const char* kMachine = "Machine and mapping";
+inline constexpr const char* kTorusMachine = "Torus machine";
+inline constexpr const char* kKernels = "Kernels and device";
+inline constexpr const char* kCloserLook = "Looking closer";
+inline constexpr const char* kCommonOptions = "Common options";  // of all commands; they stand last
+
+/// The heading of all options that are added to a command while this lives.
+class OptionGroup {
+  public:
+    OptionGroup(CLI::App& command, const std::string& heading)
+        : defaults_(*command.option_defaults()), before_(defaults_.get_group()) {
+        defaults_.group(heading);
+    }
+    OptionGroup(const OptionGroup&) = delete;
+    OptionGroup& operator=(const OptionGroup&) = delete;
+    ~OptionGroup() { defaults_.group(before_); }
+
+    /// Of those that follow.
+    void next(const std::string& heading) { defaults_.group(heading); }
+
+  private:
+    CLI::OptionDefaults& defaults_;
+    std::string before_;
+};
+
 /// Adds an option that fills `value` and refuses odd values.
 template <class Value>
 CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "") {

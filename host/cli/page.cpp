@@ -8,12 +8,14 @@
 #include <optional>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"
 #include "host/error.hpp"
 #include "host/files/read_file.hpp"
 #include "host/files/standard_streams.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/page/html_document.hpp"
 #include "host/report/bench_report.hpp"
@@ -27,7 +29,6 @@ namespace {
 
 struct PageCommand {
     std::string report, page;
-    bool quiet = false;
 };
 
 // Of a ring whose pixels a rule divides.
@@ -75,7 +76,7 @@ void make_page(const PageCommand& command) {
     }
     const std::string page = page_of_report(report, command.report);
     write_whole_file(command.page, page);
-    if (!command.quiet)
+    if (!is_quiet())
         fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", command.page,
                    static_cast<double>(page.size()) / 1e3);
 }
@@ -114,7 +115,14 @@ void write_report_and_page(const ReportFiles& files, const std::string& report) 
 void add_page_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "page", "Make a page for a browser of a saved report of render, bench or verify; nothing runs again");
+    add_examples(*command,
+                 {{"raya render scenes/planes.nff --report planes.json -o planes.png && raya page planes.json -o "
+                   "planes.html",
+                   "A render whose report becomes a page; render --page does both at once"},
+                  {"raya verify --brief --only number --report verify.json && raya page verify.json -o verify.html",
+                   "What was checked on this device, to be sent to somebody"}});
     const auto options = std::make_shared<PageCommand>();
+    const OptionGroup group(*command, kFiles);
     add_value(*command, "REPORT", options->report, "Report of raya render, bench or verify, as --report writes it")
         ->required()
         ->type_name("REPORT.json");
@@ -122,7 +130,6 @@ void add_page_command(CLI::App& program) {
               "Page to write: one file for a browser, below 1 MB, that needs no network and no scripts")
         ->required()
         ->type_name("FILE.html");
-    command->add_flag("--quiet", options->quiet, "Print no summary");
     command->callback([options] { make_page(*options); });
 }
 

@@ -91,6 +91,7 @@ Links parse_links(const std::string& text) {
 }
 
 void add_device_option(CLI::App& command, std::string& device) {
+    const OptionGroup group(command, kKernels);
     offer_words(
         add_value(command, "--device", device,
                   "OpenCL device: number, type (gpu, cpu) or part of a name or version, see raya devices; default: "

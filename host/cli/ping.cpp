@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 
@@ -22,6 +23,9 @@ void ping_pong(Ranks& ranks) {
 void add_ping_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand(
         "ping", "Under mpirun: seconds that messages of 1 B to 4 MB take between ranks, and alpha and beta, as JSON");
+    add_examples(*command, {{"mpirun -n 2 raya ping", "Between two ranks of this machine"},
+                            {"mpirun -n 2 --host one,other raya ping >network.json",
+                             "Between two machines; alpha and beta are what raya study ranks --network takes"}});
     command->callback([&ranks] { ping_pong(ranks); });
 }
 

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_command.hpp"
@@ -31,7 +32,12 @@ std::optional<RenderReport> render_image(const RenderCommand& command, RenderRun
 
 void add_render_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
+    add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
+                             "The paper's kind of scene on a ring of 256 PEs, in the scene's own size"},
+                            {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
+                             "A small picture on a torus of 64 nodes, and all that was counted as JSON"}});
     const auto options = std::make_shared<RenderCommand>();
+    OptionGroup group(*command, kFiles);
     add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
         ->required()
         ->type_name("SCENE.nff");
@@ -41,10 +47,11 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
         "-: stdout, as PPM. What goes to stdout, of this or another file, leaves the summary to stderr")
         ->required()
         ->type_name("IMAGE");
+    add_render_options(*command, options->render);
     add_tone_options(*command, options->tone);
     add_frame_options(*command, options->frames);
-    add_render_options(*command, options->render);
     add_torus_options(*command, options->torus);
+    group.next(kCloserLook);
     add_value(*command, "--cost", options->cost,
               "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM")
         ->type_name("FILE.exr");
@@ -62,7 +69,6 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
                       "Print launches and times of every labelled command, the builds, and how near each kernel came "
                       "to the device's measured peak (the roofline)");
     add_trace_options(*command, options->trace);
-    command->add_flag("--quiet", options->quiet, "Print neither summary nor progress bar");
     command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 

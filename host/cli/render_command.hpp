@@ -11,6 +11,7 @@
 #include "host/cli/tone_options.hpp"
 #include "host/cli/torus_options.hpp"
 #include "host/files/standard_streams.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/image/image_io.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
@@ -26,10 +27,12 @@ struct RenderCommand {
     ToneOptions tone;
     FrameOptions frames;
     TraceOptions trace;
-    bool profile = false, quiet = false, summary = true;
+    bool profile = false, summary = true;
 
     /// Commands are timed where somebody will read the times: a GPU's queue is faster without.
-    Timing timing() const { return profile || reports() || !trace.file.empty() ? Timing::kOn : Timing::kOff; }
+    Timing timing() const {
+        return profile || reports() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn : Timing::kOff;
+    }
     /// A page is made of the report.
     bool reports() const { return !report.empty() || !page.empty(); }
     /// Whether kernels are held against the device's peak.

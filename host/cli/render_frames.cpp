@@ -57,7 +57,7 @@ FrameEntry entry_of(const RenderReport& report, std::uint32_t number, const std:
 }
 
 void tell(const RenderCommand& one, const FrameEntry& frame, bool recorded) {
-    if (one.quiet) return;
+    if (is_quiet()) return;
     clear_status();
     fmt::print("frame {:4}  u {:.3f}  speed-up {:7.1f}  {}  {}{}\n", frame.number, frame.imbalance, frame.speed_up,
                frame.pixels, one.image, recorded ? ", as recorded" : "");
@@ -77,8 +77,8 @@ struct Sums {
     }
 };
 
-void tell(const RenderCommand& command, const Sums& sums, const std::string& record) {
-    if (command.quiet) return;
+void tell(const Sums& sums, const std::string& record) {
+    if (is_quiet()) return;
     fmt::print("{} frames, {} rendered, {} as recorded in {}; u {:.3f} to {:.3f}, {:.3f} in the mean\n", sums.frames,
                sums.rendered, sums.frames - sums.rendered, record, sums.least, sums.most,
                sums.sum / static_cast<double>(sums.frames));
@@ -137,7 +137,7 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
         }
         run.progress.next_image();
     }
-    if (ranks.first()) tell(command, sums, frame_record_file(command.image));
+    if (ranks.first()) tell(sums, frame_record_file(command.image));
 }
 
 }  // namespace raya

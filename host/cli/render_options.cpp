@@ -60,7 +60,18 @@ void add_antialias_options(CLI::App& command, RenderOptions& o) {
 
 void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
     add_strict_option(command, o.strict);
+    OptionGroup group(command, kPicture);
+    add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
+        ->type_name("N|WxH");
+    add_value(command, "--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
+        ->type_name("N");
+    add_value(command, "--sampling", o.sampling,
+              "Primary rays through pixel centres, or through pixel corners as SPD counts them")
+        ->type_name("centres|corners")
+        ->capture_default_str();
+    if (smooths) add_antialias_options(command, o);
     add_view_options(command, o.view);
+    group.next(kMachine);
     add_value(
         command, "--machine", o.machine,
         "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
@@ -68,8 +79,6 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
         "their memory so that any loads can be compared")
         ->type_name("NAME")
         ->capture_default_str();
-    add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
-        ->type_name("N|WxH");
     add_value(command, "--pes", o.pes, "Processing elements P, 1..W*H; default: the machine's, or A*B of a grid")
         ->type_name("P");
     add_value(command, "--offset", o.offset,
@@ -88,17 +97,6 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
     add_value(command, "--fold", o.fold, "Slots to PEs where P is not W: cyclic (c mod P) or block (c P div W)")
         ->type_name("cyclic|block")
         ->default_str("cyclic");
-    add_value(command, "--format", o.format,
-              "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
-              "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the others")
-        ->type_name("NAME");
-    add_value(command, "--bounces", o.bounces, "Reflections and refractions after the primary ray, 0..31; default: 8")
-        ->type_name("N");
-    add_value(command, "--sampling", o.sampling,
-              "Primary rays through pixel centres, or through pixel corners as SPD counts them")
-        ->type_name("centres|corners")
-        ->capture_default_str();
-    if (smooths) add_antialias_options(command, o);
     add_value(
         command, "--accel", o.accel,
         "How rays find what they hit, always the same: none: every ray is tested against all objects; bvh: it goes "
@@ -110,6 +108,11 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
               "Bytes of a PE's memory, of a torus node's with all its buffers; default: the machine's, 32768 on spa, "
               "4194304 on torus, no limit on grande")
         ->type_name("BYTES");
+    group.next(kKernels);
+    add_value(command, "--format", o.format,
+              "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
+              "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the others")
+        ->type_name("NAME");
     add_device_option(command, o.device);
     add_value(command, "--lanes", o.lanes,
               "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: as the device was tuned (raya bench "

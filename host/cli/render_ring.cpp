@@ -109,7 +109,7 @@ std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderR
     run.progress.end();
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
-    const ProgressBar tracing(!command.quiet && watch.traces(), "writing the trace");
+    const ProgressBar tracing(watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
     return report;
 }

@@ -35,7 +35,7 @@ void RenderProgress::end() {
 RenderRun::RenderRun(const RenderCommand& command, Ranks& of)
     : ranks(of),
       watch(command.trace, command.roofline()),
-      progress(!command.quiet && of.first(), "reading the scene"),
+      progress(of.first(), "reading the scene"),
       options(command.render),
       input(read_scene_once(watch, options, of)),
       timing_(command.timing()),

@@ -172,7 +172,7 @@ std::optional<RenderReport> render_on_torus(const RenderCommand& command, Render
     run.progress.end();
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
-    const ProgressBar tracing(!command.quiet && watch.traces(), "writing the trace");
+    const ProgressBar tracing(watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& file) { makes.trace->add_to(file, result, command.trace.pes); });
     return report;
 }

@@ -7,8 +7,8 @@
 #include "host/cl/clock_anchor.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/session_trace.hpp"
 #include "host/version.hpp"
@@ -22,6 +22,7 @@ constexpr std::string_view kBuild = "build ";
 }  // namespace
 
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
+    const OptionGroup group(command, kCloserLook);
     add_value(command, "--trace", trace.file,
               "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
               "machine in modelled time; -: stdout")
@@ -106,9 +107,9 @@ void RenderWatch::write(Session& session, const std::function<void(TraceFile&)>&
     for (const TraceFile::Part& part : others_) file.add(part);
     write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));
     if (file.left_out() > 0)
-        say(fmt::format("raya: {}: {} events are left out of {}; remedy: --trace-events {}, or fewer --trace-pes\n",
-                        trace_.file, file.left_out(), file.events() + file.left_out(),
-                        file.events() + file.left_out()));
+        warn(fmt::format("{}: {} events are left out of {}; remedy: --trace-events {}, or fewer --trace-pes",
+                         trace_.file, file.left_out(), file.events() + file.left_out(),
+                         file.events() + file.left_out()));
 }
 
 }  // namespace raya

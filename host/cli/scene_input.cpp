@@ -2,20 +2,20 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
+#include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
+#include "host/files/verbosity.hpp"
 
 namespace raya {
 
 void Warnings::add(const std::string& text) {
-    say(fmt::format("raya: warning: {}\n", text));
+    warn("warning: " + text);
     texts_.push_back(text);
 }
 
 void add_strict_option(CLI::App& command, bool& strict) {
+    const OptionGroup group(command, kFiles);
     command.add_flag(
         "--strict", strict,
         "Refuse a scene with facets that have no area or are not flat, or with entities that are not NFF's, "
@@ -24,16 +24,19 @@ void add_strict_option(CLI::App& command, bool& strict) {
 
 SceneInput read_scene(const std::string& file, bool strict) {
     SceneInput input;
-    const auto warn = [&] {
+    const auto warn_of_remarks = [&] {
         for (const NffRemark& remark : input.remarks) input.warnings.add(remark_text(input_name(file), remark));
     };
     try {
         input.scene = read_nff(file, strict ? nullptr : &input.remarks);
     } catch (const UserError&) {
-        warn();  // what was passed over may be why the rest is no scene
+        warn_of_remarks();  // what was passed over may be why the rest is no scene
         throw;
     }
-    warn();
+    warn_of_remarks();
+    tell(kVerbose,
+         fmt::format("{}: {} objects, {} lights, {} x {} pixels", input_name(file), input.scene.object_count(),
+                     input.scene.lights.size(), input.scene.view.width, input.scene.view.height));
     return input;
 }
 

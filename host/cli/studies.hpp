@@ -24,6 +24,9 @@ class StudyFolder {
     std::vector<std::filesystem::path> made_;  // the innermost first
 };
 
+/// Adds the examples that all studies have.
+void add_study_examples(CLI::App& command);
+
 /// Adds the load laboratory's studies, and `all`, to `raya study`.
 void add_laboratory_studies(CLI::App& study);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
@@ -16,6 +17,7 @@
 #include "host/files/json.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/standard_streams.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/report/table.hpp"
 #include "host/study/formats_report.hpp"
@@ -85,10 +87,11 @@ void study_formats(const FormatsCommand& command) {
     write_whole_file(folder / "formats.csv", formats_csv(study));
     write_whole_file(folder / "formats.json", formats_json(study).dump(2) + "\n");
     write_whole_file(folder / "formats.md", formats_markdown(study));
-    fmt::print("{}", text_table(formats_overview_cells(study)));
+    if (!is_quiet()) fmt::print("{}", text_table(formats_overview_cells(study)));
 }
 
 void add_timing_options(CLI::App& command, FormatsCommand& options) {
+    const OptionGroup group(command, "What is measured");
     add_value(command, "--samples", options.samples,
               "Timed renders of each scene and format, 1..1000; the least time counts")
         ->type_name("N")
@@ -103,7 +106,9 @@ void add_formats_study(CLI::App& study) {
     CLI::App* command = study.add_subcommand(
         "formats",
         "PSNR, errors and time of fp32 and the reduced number formats against the double-precision reference");
+    add_study_examples(*command);
     const auto options = std::make_shared<FormatsCommand>();
+    OptionGroup group(*command, kFiles);
     add_value(*command, "-o,--output", options->folder,
               "Folder for formats.csv, formats.json and formats.md; made if missing")
         ->required()
@@ -111,12 +116,14 @@ void add_formats_study(CLI::App& study) {
     add_value(*command, "SCENE", options->scenes,
               "Scenes in NFF, one of them - for stdin; default: the project's centre, spheres, glass, polygons, cones")
         ->type_name("SCENE.nff");
+    group.next("What is measured");
     add_value(*command, "--format", options->formats,
               "Formats beside fp32, with commas between: spa22 (e6m15) or eXmY[t]: X = 5..8, Y = 4..21, t "
               "truncates; default: e8m21, e8m18, e8m15, e7m15, e6m15, e6m14, e6m13, without and with t")
         ->delimiter(',')
         ->allow_extra_args(false)  // what follows is a scene
         ->type_name("NAME,...");
+    group.next(kPicture);
     add_value(*command, "--size", options->size, "Image size in pixels, 1..16384 a side")
         ->type_name("N|WxH")
         ->capture_default_str();
@@ -127,6 +134,14 @@ void add_formats_study(CLI::App& study) {
 }
 
 }  // namespace
+
+void add_study_examples(CLI::App& command) {
+    const std::string& name = command.get_name();
+    add_examples(command,
+                 {{fmt::format("raya study {0} -o {0}", name), "On the study's own scenes, into a folder of its own"},
+                  {fmt::format("raya study {0} scenes/mirrors.nff --size 64 -o small-{0}", name),
+                   "On another scene, in a small size, to see what it is about"}});
+}
 
 StudyFolder::StudyFolder(const fs::path& folder, const std::vector<std::string>& files) {
     if (is_standard_stream(folder))
@@ -148,6 +163,8 @@ StudyFolder::~StudyFolder() {
 
 void add_study_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("study", "Measure over many renders and write tables");
+    add_examples(*command, {{"raya study fig7 -o fig7", "One study; open fig7/index.html in a browser"},
+                            {"raya study all -o studies", "Every study, and one document of them: half an hour"}});
     command->require_subcommand(1);
     add_laboratory_studies(*command);
     add_formats_study(*command);

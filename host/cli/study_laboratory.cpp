@@ -18,6 +18,7 @@
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
 #include "host/files/say.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/study/document.hpp"
 #include "host/study/page_writer.hpp"
@@ -115,7 +116,7 @@ std::vector<Study> runnable(std::span<const Study> wanted) {
         else if (wanted.size() == 1)
             throw UserError(fmt::format("study {}: {}", study.name, lack));
         else
-            say(fmt::format("raya: study {} is left out: {}\n", study.name, lack));
+            warn(fmt::format("study {} is left out: {}", study.name, lack));
     }
     return some;
 }
@@ -147,17 +148,19 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> asked)
         pages.back().run = record_of(wanted[i], command, session.device());
         plots.push_back(write_page(command.folder, pages.back()));
         clear_status();
-        print_page(pages.back(), plots.back(), command.folder);
+        if (!is_quiet()) print_page(pages.back(), plots.back(), command.folder);
         std::fflush(stdout);  // how far it has come shows in a log too
     }
     write_document(command.folder, pages, plots);
     if (wanted.size() > 1) write_index(command.folder, pages);
-    fmt::print("{}\n", (fs::path(command.folder) / "index.html").string());
+    if (!is_quiet()) fmt::print("{}\n", (fs::path(command.folder) / "index.html").string());
 }
 
 void add_study(CLI::App& parent, const std::string& name, const std::string& summary, std::span<const Study> wanted) {
     CLI::App* command = parent.add_subcommand(name, summary);
+    add_study_examples(*command);
     const auto options = std::make_shared<LaboratoryCommand>();
+    OptionGroup group(*command, kFiles);
     add_value(*command, "-o,--output", options->folder,
               "Folder for index.html, to be read; Markdown, CSV, JSON and plots beside it; made if missing")
         ->required()
@@ -169,9 +172,11 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
         : wanted.front().one_scene ? "Scene in NFF; -: stdin; default: centre, the paper's kind"
                                    : "Scenes in NFF, one of them - for stdin; default: the study's own")
         ->type_name("SCENE.nff");
+    group.next(kPicture);
     add_value(*command, "--size", options->size,
               "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
         ->type_name("N");
+    group.next(kMachine);
     if (wanted.front().name == "ranks")
         add_value(*command, "--network", options->network,
                   "A network of yours beside those of the study: what a message takes in microseconds, and a byte in "

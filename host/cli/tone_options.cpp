@@ -28,6 +28,7 @@ ToneCurve parse_curve(const std::string& text) {
 }  // namespace
 
 void add_tone_options(CLI::App& command, ToneOptions& t) {
+    const OptionGroup group(command, kPicture);
     add_value(command, "--exposure", t.exposure,
               "Of 8-bit pictures: stops, -64..64, by which they are brighter: colours times 2^EV; the hash is that of "
               "the colours as they are")

@@ -16,7 +16,7 @@ constexpr const char* kPacketsEnd = ".csv.gz";
 }  // namespace
 
 void add_torus_options(CLI::App& command, TorusOptions& t) {
-    const std::string group = "Torus machine";
+    const OptionGroup group(command, kTorusMachine);
     CLI::Option* machine = command.get_option("--machine");
     machine->description(machine->get_description() +
                          "; torus: nodes of 4 MB that hold voxels of the scene, see below");
@@ -24,7 +24,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     for (const Machine& one : machines()) names.push_back(one.name);
     offer_words(machine, names);
     const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type) {
-        return add_value(command, name, value, text)->group(group)->type_name(type);
+        return add_value(command, name, value, text)->type_name(type);
     };
     add("--nodes", t.nodes, "Nodes along x, y and z of the scene, at most 65,536 together", "IxJxK")
         ->default_str("4x4x4");
@@ -70,12 +70,9 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
             "simgrid_replay; see docs/packets.md",
             "simgrid"),
         {"simgrid"});
-    command
-        .add_flag(
-            "--async", t.async,
-            "Simulate the machine without supersteps too, whose nodes compute while its links carry: one modelled "
-            "time beside the two bounds")
-        ->group(group);
+    command.add_flag("--async", t.async,
+                     "Simulate the machine without supersteps too, whose nodes compute while its links carry: one "
+                     "modelled time beside the two bounds");
 }
 
 namespace {

@@ -1,12 +1,12 @@
 #include "host/cli/tuned_option.hpp"
 
-#include <CLI/CLI.hpp>
-
+#include "host/cli/options.hpp"
 #include "host/tune/store.hpp"
 
 namespace raya {
 
 void add_tuned_option(CLI::App& command, bool& no_tuned) {
+    const OptionGroup group(command, kKernels);
     command.add_flag(
         "--no-tuned", no_tuned,
         "Take the defaults, not what raya bench --tune has kept for this device and driver; the environment "

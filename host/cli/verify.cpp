@@ -2,18 +2,19 @@
 #include "host/verify/verify.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/say.hpp"
+#include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/verify/worker.hpp"
@@ -41,6 +42,7 @@ struct VerifyCommand {
         add("--kernel-dir", kernel_dir);
         add("--only", only);
         if (lanes) add("--lanes", std::to_string(lanes));
+        for (const std::string& word : verbosity_words()) all.push_back(word);
         return all;
     }
 };
@@ -53,7 +55,7 @@ std::string closing_text(const std::vector<Check>& checks, double seconds) {
 
 DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
                         std::size_t& devices) {
-    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    const bool brief = is_quiet(), shows = shows_progress();
     const auto print = [&](const std::string& line) {
         clear_status();
         fmt::print("{}", line);
@@ -62,17 +64,22 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
     const SupervisorSink sink{
         .device =
             [&](const DeviceChecks& device, const std::vector<std::string>& left_out) {
+                if (brief) return;
                 if (index == 0)
                     for (const std::string& line : left_out) print(line + "\n");
                 print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
             },
         .running =
             [&](const std::string& layer, const std::string& name, double seconds) {
-                if (terminal) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
+                if (shows) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
             },
-        .finished = [&](const Check& check) { print(check_lines(check)); }};
+        .finished =
+            [&](const Check& check) {
+                if (!brief || check.verdict.outcome == Outcome::kFail) print(check_lines(check));
+            }};
     DeviceChecks result = supervise(command.arguments(), index, settings, sink, devices);
-    print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
+    if (!brief || devices == 1 || !result.is_right())
+        print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
 }
 
@@ -136,11 +143,11 @@ void run_verify(const VerifyCommand& command) {
 void add_verify_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "verify", "Check a device, its driver and its compiler: arithmetic, hits, machines and images, all by bits");
+    add_examples(*command, {{"raya verify", "What may be wrong with this device, in about half a minute"},
+                            {"raya verify --brief --only number --report verify.json",
+                             "Few of the checks, those of arithmetic, and what was found as JSON"}});
     const auto options = std::make_shared<VerifyCommand>();
-    add_device_option(*command, options->device);
-    command->get_option("--device")
-        ->description(command->get_option("--device")->get_description() +
-                      "; all: every usable device, one after another");
+    OptionGroup group(*command, "What is checked");
     command->add_flag("--quick", options->quick,
                       "The device's own lanes, the usual formats, a dozen images: the default");
     command->add_flag("--brief", options->brief,
@@ -150,15 +157,6 @@ void add_verify_command(CLI::App& program) {
         "--full", options->full,
         "Every format, width of lanes and group size: about five minutes with PoCL on an idle CPU, longer where "
         "compilers are slow on wide vectors");
-    add_value(*command, "--report", options->report,
-              "Write every check, with what is wrong, as JSON; -: stdout, and the lines on stderr")
-        ->type_name("FILE.json");
-    add_value(*command, "--page", options->page,
-              "Write every check, and the first that failed in full, as a page for a browser; it is what raya page "
-              "makes of the report")
-        ->type_name("FILE.html");
-    add_value(*command, "--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
-        ->type_name("DIR");
     add_value(*command, "--lanes", options->lanes,
               "This width of lanes alone, for compilers that are slow on wide vectors; default: the device's "
               "own, with --full all")
@@ -167,6 +165,21 @@ void add_verify_command(CLI::App& program) {
     add_value(*command, "--only", options->only,
               "Only checks with this text in \"LAYER NAME\", as printed: number, \"image glass\", spa22, ...")
         ->type_name("TEXT");
+    add_device_option(*command, options->device);
+    command->get_option("--device")
+        ->description(command->get_option("--device")->get_description() +
+                      "; all: every usable device, one after another");
+    group.next(kKernels);
+    add_value(*command, "--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
+        ->type_name("DIR");
+    group.next(kCloserLook);
+    add_value(*command, "--report", options->report,
+              "Write every check, with what is wrong, as JSON; -: stdout, and the lines on stderr")
+        ->type_name("FILE.json");
+    add_value(*command, "--page", options->page,
+              "Write every check, and the first that failed in full, as a page for a browser; it is what raya page "
+              "makes of the report")
+        ->type_name("FILE.html");
     // For the process that runs the checks. No group: not in the help.
     add_value(*command, "--lines", options->lines)->group("");
     add_value(*command, "--worker-device", options->worker_device)->group("");

@@ -78,6 +78,7 @@ std::vector<std::pair<std::string, std::string>> ViewOptions::words() const {
 }
 
 void add_view_options(CLI::App& command, ViewOptions& v) {
+    const OptionGroup group(command, kCamera);
     add_value(command, "--from", v.from, "Where the eye is, scene units; default: the scene's, as for the next five")
         ->type_name("X,Y,Z");
     add_value(command, "--at", v.at, "The point in the middle of the image")->type_name("X,Y,Z");

@@ -1,12 +1,12 @@
 #include "host/files/progress.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "host/files/say.hpp"
+#include "host/files/verbosity.hpp"
 
 namespace raya {
 
@@ -23,7 +23,7 @@ std::string progress_line(const std::string& what, const std::optional<Done>& do
 }
 
 ProgressBar::ProgressBar(bool wanted, const std::string& what) : what_(what) {
-    if (wanted && ::isatty(STDERR_FILENO) != 0) drawer_ = std::thread([this] { draw_until_ended(); });
+    if (wanted && shows_progress()) drawer_ = std::thread([this] { draw_until_ended(); });
 }
 
 ProgressBar::~ProgressBar() {

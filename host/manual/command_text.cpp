@@ -43,6 +43,18 @@ ValueText value_of(const OptionText& option) {
     return {.kind = kFile, .extension = extension.substr(0, extension.find('['))};
 }
 
+std::string said_of(const OptionText& option) {
+    if (option.help.empty()) return option.value;
+    return option.usual.empty() ? option.help : option.help + "; default: " + option.usual;
+}
+
+std::vector<std::string> groups_of(const CommandText& command) {
+    std::vector<std::string> groups;
+    for (const OptionText& option : command.options)
+        if (std::find(groups.begin(), groups.end(), option.group) == groups.end()) groups.push_back(option.group);
+    return groups;
+}
+
 std::string brief(const std::string& help, std::size_t most) {
     std::string text = help.substr(0, std::min({help.find("; "), help.find(". "), help.find('\n')}));
     if (text.size() <= most) return text;

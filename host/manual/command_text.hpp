@@ -17,11 +17,20 @@ struct OptionText {
     std::vector<std::string> words{};  // that the value may be, as far as they can be listed
 
     bool is_flag() const { return value.empty(); }
+    /// Stands alone, without an option.
+    bool is_word() const { return !names.front().starts_with('-'); }
+};
+
+/// A line for a shell, and what it does.
+struct ExampleText {
+    std::string command{};  // "raya render scenes/centre.nff -o centre.png"
+    std::string says{};
 };
 
 struct CommandText {
     std::string name{};  // "render", of the first "raya"
     std::string summary{};
+    std::vector<ExampleText> examples{};
     std::string footer{};  // paragraphs; one that begins with "Title: " or "Title:" and a line's end has that title
     std::vector<OptionText> words{};  // without an option, in their order
     std::vector<OptionText> options{};
@@ -38,6 +47,12 @@ struct ValueText {
 /// From the words of the option; else from what help calls its value: "ring|bus", "none,grid" are lists of words,
 /// FILE.json, SCENE.nff, IMAGE are files, DIR is a folder.
 ValueText value_of(const OptionText& option);
+
+/// What help says of an option, with its default; of one without help, what it calls its value.
+std::string said_of(const OptionText& option);
+
+/// The headings of a command's options, in their order.
+std::vector<std::string> groups_of(const CommandText& command);
 
 /// The first thing that help says, for a line beside a name: up to `most` letters.
 std::string brief(const std::string& help, std::size_t most = 72);

@@ -12,7 +12,37 @@ const std::vector<std::string>& completed_shells() {
     return shells;
 }
 
-std::string completion_script(const CommandText& program, const std::string& shell) {
+namespace {
+
+// A command's names of those below it, with no options but `options`.
+std::vector<CommandText> names_below(const CommandText& command, const std::vector<OptionText>& options) {
+    std::vector<CommandText> all;
+    for (const CommandText& one : command.commands) {
+        CommandText name;
+        name.name = one.name;
+        name.summary = one.summary;
+        name.options = options;
+        name.commands = names_below(one, options);
+        all.push_back(std::move(name));
+    }
+    return all;
+}
+
+// Words that lead to a command, as `help study fig7` has them, are offered as commands are.
+CommandText with_words_as_commands(const CommandText& program) {
+    CommandText all = program;
+    for (CommandText& command : all.commands) {
+        if (command.words.size() != 1 || !command.words[0].repeated || command.words[0].value != "COMMAND") continue;
+        command.words.clear();
+        command.commands = names_below(program, command.options);
+    }
+    return all;
+}
+
+}  // namespace
+
+std::string completion_script(const CommandText& as_parsed, const std::string& shell) {
+    const CommandText program = with_words_as_commands(as_parsed);
     if (shell == "bash") return bash_completion(program);
     if (shell == "zsh") return zsh_completion(program);
     if (shell == "fish") return fish_completion(program);

@@ -54,8 +54,8 @@ std::string upper(std::string text) {
 std::string heading(const std::string& text) { return ".SH " + upper(plain(text)) + '\n'; }
 
 std::string in_synopsis(const OptionText& o) {
-    std::string text = o.names.front().starts_with('-') ? bold(o.names.front()) + ' ' + italic(o.value)
-                                                        : italic(o.names.front()) + (o.repeated ? " ..." : "");
+    std::string text = o.is_word() ? italic(o.names.front()) + (o.repeated ? " ..." : "")
+                                   : bold(o.names.front()) + ' ' + italic(o.value);
     return o.required ? text : '[' + text + ']';
 }
 
@@ -72,9 +72,8 @@ std::string entry(const OptionText& o) {
     std::string names;
     for (const std::string& name : o.names)
         names += (names.empty() ? "" : ", ") + (name.starts_with('-') ? bold(name) : italic(name));
-    if (!o.is_flag() && o.names.front().starts_with('-')) names += ' ' + italic(o.value);
-    const std::string usual = o.usual.empty() ? "" : "; default: " + o.usual;
-    return ".TP\n" + names + '\n' + line(o.help.empty() ? o.value : o.help + usual);
+    if (!o.is_flag() && !o.is_word()) names += ' ' + italic(o.value);
+    return ".TP\n" + names + '\n' + line(said_of(o));
 }
 
 std::string entries(const std::vector<OptionText>& options) {
@@ -86,11 +85,8 @@ std::string entries(const std::vector<OptionText>& options) {
 // Options by their groups in help, each group below `make_heading` of its name.
 template <class Heading>
 std::string grouped(const CommandText& command, Heading&& make_heading) {
-    std::vector<std::string> groups;
-    for (const OptionText& o : command.options)
-        if (std::find(groups.begin(), groups.end(), o.group) == groups.end()) groups.push_back(o.group);
     std::string text = command.words.empty() ? "" : make_heading("Arguments") + entries(command.words);
-    for (const std::string& group : groups) {
+    for (const std::string& group : groups_of(command)) {
         text += make_heading(group);
         for (const OptionText& o : command.options)
             if (o.group == group) text += entry(o);
@@ -107,9 +103,18 @@ bool ask_alike(const CommandText& a, const CommandText& b) {
     return alike(a.words, b.words) && alike(a.options, b.options);
 }
 
-// Without --help, of which the page itself tells.
-CommandText without_help(CommandText command) {
-    std::erase_if(command.options, [](const OptionText& o) { return o.names.back() == "--help"; });
+std::string examples(const CommandText& command) {
+    std::string text;
+    for (const ExampleText& example : command.examples)
+        text += ".TP\n" + bold(example.command) + '\n' + line(example.says);
+    return text;
+}
+
+// Without the options of `all`, of which the page itself tells.
+CommandText without(CommandText command, const std::vector<OptionText>& all) {
+    std::erase_if(command.options, [&](const OptionText& o) {
+        return std::any_of(all.begin(), all.end(), [&](const OptionText& one) { return one.names == o.names; });
+    });
     return command;
 }
 
@@ -124,7 +129,9 @@ std::string commands_below(const CommandText& command, const std::string& path) 
             std::stable_partition(left.begin(), left.end(), [&](const auto* one) { return ask_alike(*one, first); });
         for (auto one = left.begin(); one != others; ++one)
             text += ".TP\n" + synopsis(**one, path + ' ' + (*one)->name) + line((*one)->summary);
-        text += ".RS\n" + grouped(without_help(first), [](const std::string&) { return std::string(); }) + ".RE\n";
+        text += ".RS\n" + grouped(without(first, command.options), [](const std::string&) { return std::string(); });
+        if (!first.examples.empty()) text += ".TP\nExamples\n" + (".RS\n" + examples(first)) + ".RE\n";
+        text += ".RE\n";
         left.erase(left.begin(), others);
     }
     return text;
@@ -182,7 +189,9 @@ ManPage page_of(const CommandText& command, const CommandText& program, const st
     if (whole) text += heading("Commands");
     for (const CommandText& one : program.commands)
         if (whole) text += ".TP\n" + reference(name + '-' + one.name) + '\n' + line(one.summary);
-    text += grouped(command, heading) + closing(command.footer) + heading("See also");
+    text += grouped(command, heading);
+    if (!command.examples.empty()) text += heading("Examples") + examples(command);
+    text += closing(command.footer) + heading("See also");
     if (!whole) return {name, text + reference(program.name) + '\n'};
     for (const CommandText& one : program.commands)
         text += reference(name + '-' + one.name) + (&one == &program.commands.back() ? "\n" : " ,\n");

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -171,6 +172,14 @@ inline std::string file_contents(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error("cannot read " + path.string());
     return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A text with one blank for each gap between words, as help has it at any width.
+inline std::string squeezed(const std::string& text) {
+    std::string all;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) all += (all.empty() ? "" : " ") + word;
+    return all;
 }
 
 inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }

@@ -48,7 +48,7 @@ TEST_CASE("--version prints name, version, commit and build", "[cli]") {
 }
 
 TEST_CASE("--help names every command and the exit codes", "[cli]") {
-    const std::string help = succeed({"--help"}).out;
+    const std::string help = squeezed(succeed({"--help"}).out);
     for (const char* text :
          {"render", "devices", "generate", "bench", "Exit codes: 0 done, 2 bad option or input, 3 device"})
         CHECK_THAT(help, Catch::Contains(text));
@@ -59,7 +59,7 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
         Words command;
         Words texts;
     };
-    const Words of_a_render = {"--machine NAME=spa",
+    const Words of_a_render = {"--machine NAME spa: 256 PEs",
                                "256 PEs of 32 KB",
                                "grande",
                                "--size N|WxH",
@@ -71,34 +71,37 @@ TEST_CASE("a command's help gives unit, default and legal range", "[cli]") {
                                "grid:AxB",
                                "tiles:WxH",
                                "random:seed",
-                               "cyclic|block=cyclic",
+                               "cyclic|block",
+                               "(c P div W); default: cyclic",
                                "--format NAME",
                                "0..31; default: 8",
-                               "centres|corners=centres",
+                               "centres|corners",
+                               "default: centres",
                                "1, 4, 8 or 16; default",
                                "1..1024; default: as the device was tuned, else 1 on a CPU",
                                "RAYA_DEVICE",
                                "--kernel-dir DIR"};
     Words render = of_a_render;
-    render.insert(render.end(), {"SCENE.nff", ".exr or .pfm (linear)",
-                                 "modelled cycles of each pixel", "--report FILE.json", "--profile",
-                                 "--trace FILE.json[.gz]", "--trace-events N=1000000", "--trace-pes N=16", "--quiet"});
+    render.insert(render.end(), {"SCENE", ".exr or .pfm (linear)", "modelled cycles of each pixel",
+                                 "--report FILE.json", "--profile", "--trace FILE.json[.gz]", "--trace-events N",
+                                 "default: 1000000", "--trace-pes N", "default: 16", "--quiet"});
     Words bench = of_a_render;
-    bench.insert(bench.end(), {"--samples N=7", "default: 30 spheres and a plane, 512 x 512"});
-    const std::vector<Row> rows = {{{"render"}, render},
-                                   {{"bench"}, bench},
-                                   {{"devices"}, {"every OpenCL device of every platform"}},
-                                   {{"generate"}, {"balls", "lattice", "gears", "uniform", "random", "centre"}},
-                                   {{"generate", "balls"}, {"--level LEVEL=4", "0..6", "7,381 spheres", "SCENE.nff"}},
-                                   {{"generate", "lattice"}, {"--size N=12", "1..64", "2,197 spheres", "SCENE.nff"}},
-                                   {{"generate", "gears"}, {"--size N=4", "1..16", "9,345 polygons", "SCENE.nff"}},
-                                   {{"generate", "uniform"}, {"1..1000000", "--voxels XxYxZ", "1..256 each"}},
-                                   {{"generate", "random"}, {"1..1000000", "--seed N=1"}},
-                                   {{"generate", "centre"}, {"-o,--output SCENE.nff"}}};
+    bench.insert(bench.end(), {"--samples N", "are printed; default: 7", "default: 30 spheres and a plane, 512 x 512"});
+    const std::vector<Row> rows = {
+        {{"render"}, render},
+        {{"bench"}, bench},
+        {{"devices"}, {"every OpenCL device of every platform"}},
+        {{"generate"}, {"balls", "lattice", "gears", "uniform", "random", "centre"}},
+        {{"generate", "balls"}, {"--level LEVEL", "default: 4", "0..6", "7,381 spheres", "SCENE.nff"}},
+        {{"generate", "lattice"}, {"--size N", "default: 12", "1..64", "2,197 spheres", "SCENE.nff"}},
+        {{"generate", "gears"}, {"--size N", "default: 4", "1..16", "9,345 polygons", "SCENE.nff"}},
+        {{"generate", "uniform"}, {"1..1000000", "--voxels XxYxZ", "1..256 each"}},
+        {{"generate", "random"}, {"1..1000000", "--seed N", "default: 1"}},
+        {{"generate", "centre"}, {"-o, --output SCENE.nff"}}};
     for (const Row& row : rows) {
         Words arguments = row.command;
         arguments.emplace_back("--help");
-        const std::string help = succeed(arguments).out;
+        const std::string help = squeezed(succeed(arguments).out);
         for (const std::string& text : row.texts) CHECK_THAT(help, Catch::Contains(text));
     }
 }

@@ -122,11 +122,14 @@ TEST_CASE("bench takes no torus", "[cli]") {
 TEST_CASE("the help of render gives the torus's options with units and defaults", "[cli]") {
     const Outcome run = run_raya({"render", "--help"});
     REQUIRE(run.code == 0);
+    const std::string help = squeezed(run.out);
     for (const char* text :
-         {"Torus machine", "torus: nodes of 4 MB", "--nodes IxJxK=4x4x4", "--voxels AxBxC", "fewer leave nodes empty",
-          "one for each node", "torus3d|torus2d=torus3d", "root|all=all", "--queue N", "Packets that wait",
-          "--pe-memory BYTES", "4194304", "--packets FILE.csv.gz", "docs/packets.md", "--async", "--replay simgrid"})
-        CHECK_THAT(run.out, Catch::Contains(text));
+         {"Torus machine", "torus: nodes of 4 MB",
+          "--nodes IxJxK Nodes along x, y and z of the scene, at most 65,536 together; default: 4x4x4",
+          "--voxels AxBxC", "fewer leave nodes empty", "one for each node", "torus3d|torus2d", "default: torus3d",
+          "root|all", "default: all", "--queue N", "Packets that wait", "--pe-memory BYTES", "4194304",
+          "--packets FILE.csv.gz", "docs/packets.md", "--async", "--replay simgrid"})
+        CHECK_THAT(help, Catch::Contains(text));
     CHECK_THAT(run_raya({"bench", "--help"}).out, !Catch::Contains("--nodes"));
 }
 

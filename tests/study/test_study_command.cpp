@@ -88,7 +88,7 @@ TEST_CASE("a study that there is not, or none, is refused with those that there 
     check_refused(outputs, {"study", "speed", "-o", outputs / "x"}, 2, {"no command speed", "there are fig7"});
     check_refused(outputs, {"study"}, 2, {"raya: study: name a command: fig7"});
     CHECK_THAT(run_raya({"study", "--help"}).out,
-               Catch::Contains("raya study [OPTIONS] SUBCOMMAND") && Catch::Contains("formats"));
+               Catch::Contains("Usage: raya study COMMAND [OPTIONS]") && Catch::Contains("formats"));
 }
 
 TEST_CASE("options of a formats study that are out of range are refused before anything is made", "[study]") {

@@ -37,6 +37,9 @@ EXPECTED = [
     ("raya verify --lanes ", ["1", "4", "8", "16"], ["notes.txt"]),
     ("raya render --size ", [], ["notes.txt", "ball.nff"]),
     ("raya manual gen", ["generate"], ["ball.nff"]),
+    ("raya help stu", ["study"], ["render"]),
+    ("raya help study fi", ["fig7", "fig13"], ["table2", "render"]),
+    ("raya render -", ["--quiet", "--verbose", "-q"], ["--lines"]),
     ("raya completion ", ["bash", "zsh", "fish"], ["notes.txt"]),
 ]
 

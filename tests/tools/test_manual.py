@@ -31,20 +31,26 @@ def shown(page):
 
 
 def help_of(command):
-    return subprocess.run([raya, *command, "--help"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([raya, *command, "--help"], capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "120"}).stdout
+    return re.sub(r" \\\n +", " ", text)  # an example's line that goes on
 
 
 def entries(text):
-    """(names, help) of every option and command in a help text."""
-    for line in re.sub(r"\n {20,}(?=\S)", "  ", text).split("\n"):
-        match = re.match(r"  (\S.*?)\s{2,}(\S.*)", line)
-        if match:
-            yield match[1], squeezed(match[2])
+    """(names, help) of every example, option and command in a help text."""
+    begun = None
+    for line in [*text.split("\n"), ""]:
+        if line.startswith("   ") and begun:
+            begun.append(line)
+            continue
+        if begun:
+            names, _, said = " ".join(begun)[2:].partition("  ")
+            yield names, squeezed(said)
+        begun = [line] if re.match(r"  \S", line) else None
 
 
 def commands_in(text):
-    part = re.search(r"\nSubcommands:\n(.*?)(\n\n|$)", text, re.S)
-    return [line.split()[0] for line in part[1].split("\n")] if part else []
+    part = re.search(r"\nCommands:\n(.*?)(\n\n|$)", text, re.S)
+    return re.findall(r"^  (\S+)", part[1], re.M) if part else []
 
 
 def hold(page, command, below=False):

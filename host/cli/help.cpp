@@ -1,0 +1,51 @@
+// raya help COMMAND: what raya COMMAND --help prints.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/help_formatter.hpp"
+#include "host/cli/nearest.hpp"
+#include "host/cli/options.hpp"
+#include "host/cli/parse_failure.hpp"
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+const CLI::App& command_below(const CLI::App& command, const std::string& name) {
+    for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; }))
+        if (one->get_name() == name) return *one;
+    const std::vector<std::string> known = command_names(command);
+    if (known.empty())
+        throw UserError(
+            fmt::format("help: {} has no command {}; see raya help {}", command.get_name(), name, command.get_name()));
+    throw UserError(
+        fmt::format("help: no command {}{}; there are {}", name, did_you_mean(name, known), fmt::join(known, ", ")));
+}
+
+void print_help(const CLI::App& program, const std::vector<std::string>& words) {
+    const CLI::App* command = &program;
+    std::string path = program.get_name();
+    for (const std::string& word : words) {
+        command = &command_below(*command, word);
+        path += ' ' + word;
+    }
+    fmt::print("{}", command->get_formatter()->make_help(command, path, CLI::AppFormatMode::Normal));
+}
+
+}  // namespace
+
+void add_help_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
+    add_examples(*command, {{"raya help render", "What raya render --help prints: usage, examples, all options"},
+                            {"raya help study fig7", "The same of a study"}});
+    const auto words = std::make_shared<std::vector<std::string>>();
+    add_value(*command, "COMMAND", *words, "The words that lead to it, such as study fig7; default: raya's own")
+        ->type_name("COMMAND");
+    command->callback([words, &program] { print_help(program, *words); });
+}
+
+}  // namespace raya
