@@ -164,7 +164,7 @@ StudyFolder::~StudyFolder() {
 void add_study_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("study", "Measure over many renders and write tables");
     add_examples(*command, {{"raya study fig7 -o fig7", "One study; open fig7/index.html in a browser"},
-                            {"raya study all -o studies", "Every study, and one document of them: half an hour"}});
+                            {"raya study all -o studies", "Every study, and one document of them all"}});
     command->require_subcommand(1);
     add_laboratory_studies(*command);
     add_formats_study(*command);

@@ -143,7 +143,7 @@ void run_verify(const VerifyCommand& command) {
 void add_verify_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "verify", "Check a device, its driver and its compiler: arithmetic, hits, machines and images, all by bits");
-    add_examples(*command, {{"raya verify", "What may be wrong with this device, in about half a minute"},
+    add_examples(*command, {{"raya verify", "All that matters of this device, a line for each check"},
                             {"raya verify --brief --only number --report verify.json",
                              "Few of the checks, those of arithmetic, and what was found as JSON"}});
     const auto options = std::make_shared<VerifyCommand>();

@@ -123,6 +123,15 @@ TEST_CASE("every command that takes long says so on a terminal within two second
     }
 }
 
+TEST_CASE("with -q nothing is drawn on a terminal", "[cli][verbosity]") {
+    const ScratchFolder folder;
+    const Surroundings slow = failing_device("clCreateContext 1 slow");
+    for (const Words& words : {Words{"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--pes",
+                                     "4", "--lanes", "4", "-q"},
+                               Words{"verify", "--only", "machine bus", "--lanes", "4", "-q"}})
+        CHECK(told_on_terminal(words, slow) == "");
+}
+
 TEST_CASE("a check that takes long is named on a terminal, and nowhere else", "[cli][verify]") {
     const Words one_check = {"verify", "--only", "machine bus"};
     const Surroundings slow = failing_device("clFinish 1 slow");

@@ -113,6 +113,23 @@ TEST_CASE("mpirun: rank 0 alone has stdin and stdout", "[ranks][.mpirun]") {
     }
 }
 
+TEST_CASE("mpirun: rank 0 alone says what it does", "[ranks][.mpirun][verbosity]") {
+    const ScratchFolder folder;
+    for (const Mpi& mpi : mpis_here()) {
+        const RanksOutcome run =
+            run_ranks(mpi, {"-n", "3", mpi.program, "render", scene_file("planes"), "-o", folder / "x.pfm", "--size",
+                            "16", "--lanes", "4", "--pes", "8", "-vv"});
+        INFO(run.told());
+        CHECK(run.code == 0);
+        for (const char* line :
+             {"raya: device ", "raya: read scene: ", "raya: trace: ", "raya: on the device: trace (kernel)"}) {
+            const std::size_t first = run.err.find(line);
+            CHECK(first != std::string::npos);
+            CHECK(run.err.find(line, first + 1) == std::string::npos);
+        }
+    }
+}
+
 TEST_CASE("mpirun: what ranks send arrives, of any size, and from all to all", "[ranks][.mpirun]") {
     for (const Mpi& mpi : mpis_here())
         for (const std::uint32_t count : {2u, 3u, 7u}) {

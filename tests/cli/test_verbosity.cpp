@@ -1,0 +1,147 @@
+// -q and -v: what is said beside a result, and that the result stays the same.
+#include <algorithm>
+#include <sstream>
+
+#include "tests/cli/refusals.hpp"
+#include "tests/kernels/write_kernels.hpp"
+#include "tests/verify/faults.hpp"
+
+namespace raya {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) all.push_back(line);
+    return all;
+}
+
+Words small_render(const ScratchFolder& folder, const Words& options) {
+    Words words = {"render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--pes", "4", "--lanes",
+                   "4"};
+    words.insert(words.end(), options.begin(), options.end());
+    return words;
+}
+
+Outcome succeed(const Words& words) {
+    Outcome run = run_raya(words);
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    return run;
+}
+
+/// What is printed but the times, which no two runs share.
+std::vector<std::string> without_times(const std::string& out) {
+    std::vector<std::string> lines = lines_of(out);
+    std::erase_if(lines, [](const std::string& line) { return line.starts_with("time "); });
+    return lines;
+}
+
+/// A scene with a polygon that has no area, which is left out with a warning.
+std::string scene_to_be_warned_of(const ScratchFolder& folder) {
+    std::string scene = file_contents(scene_file("planes"));
+    std::ofstream(folder / "flat.nff") << scene << "p 3\n0 0 0\n1 1 1\n2 2 2\n";
+    return folder / "flat.nff";
+}
+
+TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout", "[cli][verbosity]") {
+    const ScratchFolder folder;
+    const Outcome usual = succeed(small_render(folder, {}));
+    CHECK(usual.err.empty());
+    const std::string picture = file_contents(folder / "x.ppm");
+    const Outcome run = succeed(small_render(folder, {"-v"}));
+    INFO(run.err);
+    CHECK(without_times(run.out) == without_times(usual.out));
+    CHECK(file_contents(folder / "x.ppm") == picture);
+    for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
+    for (const char* text : {"planes.nff: ", " objects, ", " lights, ", "raya: device ", ", driver "})
+        CHECK_THAT(run.err, Catch::Contains(text));
+    for (const char* step : {"read scene", "choose device", "open device", "pack scene", "build ring/trace.cl",
+                             "set up device", "trace", "gather", "render", "write images", "write report"})
+        CHECK_THAT(run.err, Catch::Matches("(.|\n)*raya: " + std::string(step) + ": [0-9]+\\.[0-9]{3} s\n(.|\n)*"));
+    CHECK_THAT(run.err, !Catch::Contains("options -cl-std"));
+}
+
+TEST_CASE("-vv tells builds and the device's times too", "[cli][verbosity]") {
+    const ScratchFolder folder;
+    for (const Words& twice : {Words{"-vv"}, Words{"--verbose", "-v"}}) {
+        const Outcome run = succeed(small_render(folder, twice));
+        INFO(run.err);
+        for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
+        CHECK_THAT(run.err, Catch::Contains("raya: build ring/trace.cl: options -cl-std=CL1.2 "));
+        CHECK_THAT(run.err,
+                   Catch::Matches("(.|\n)*raya: on the device: trace \\(kernel\\) x 1: [0-9]+\\.[0-9]{3} ms\n(.|\n)*"));
+    }
+}
+
+TEST_CASE("-q leaves warnings, -qq leaves them out, and neither an error", "[cli][verbosity]") {
+    const ScratchFolder folder;
+    const std::string scene = scene_to_be_warned_of(folder);
+    Words words = small_render(folder, {});
+    words[1] = scene;
+    CHECK_THAT(succeed(words).err, Catch::Contains("raya: warning: "));
+    words.emplace_back("-q");
+    const Outcome quiet = succeed(words);
+    CHECK(quiet.out.empty());
+    CHECK_THAT(quiet.err, Catch::Contains("raya: warning: "));
+    words.emplace_back("-q");
+    const Outcome silent = succeed(words);
+    CHECK(silent.out.empty());
+    CHECK(silent.err.empty());
+    words.emplace_back("--strict");
+    const Outcome refused = run_raya(words);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Catch::Contains("flat.nff"));
+}
+
+TEST_CASE("-q with -v is refused, in either order", "[cli][verbosity]") {
+    const ScratchFolder outputs;
+    for (const Words& both : {Words{"-q", "-v"}, Words{"--verbose", "--quiet"}, Words{"-vq"}})
+        check_refused(outputs, small_render(outputs, both), 2, {"--quiet and --verbose: give one of them"});
+    check_refused(outputs, {"-v", "devices", "-q"}, 2, {"--quiet and --verbose"});
+}
+
+TEST_CASE("before the command and behind it they say the same", "[cli][verbosity]") {
+    for (const Words& words : {Words{"devices", "-v"}, Words{"-v", "devices"}}) {
+        const Outcome run = succeed(words);
+        CHECK_THAT(run.out, Catch::Contains("platform"));
+    }
+    const ScratchFolder folder;
+    Words words = small_render(folder, {});
+    words.insert(words.begin(), "-q");
+    const Outcome run = succeed(words);
+    CHECK(run.out.empty());
+    CHECK(run.err.empty());
+}
+
+TEST_CASE("verify -q prints what failed and the last line", "[cli][verify][verbosity]") {
+    const Words machine = {"verify", "--only", "machine bus", "--lanes", "4", "-q"};
+    const Outcome right = succeed(machine);
+    REQUIRE(lines_of(right.out).size() == 1);
+    CHECK_THAT(right.out, Catch::Matches(".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s\n"));
+    const ScratchFolder folder;
+    const Outcome wrong = run_raya(
+        {"verify", "--only", "machine", "-q", "--kernel-dir", write_kernels(folder / "kernels", {kMappingFault})});
+    INFO(wrong.told());
+    CHECK(wrong.code == 4);
+    CHECK_THAT(wrong.out, Catch::StartsWith("FAIL  machine ") && !Catch::Contains("PASS"));
+    CHECK_THAT(lines_of(wrong.out).back(), Catch::Contains(" 2 failed, "));
+}
+
+TEST_CASE("studies, pages and frames print nothing with -q", "[cli][verbosity]") {
+    const ScratchFolder folder;
+    for (const Words& words :
+         {Words{"study", "fig7", "--size", "32", "-o", folder / "fig7", "-q"},
+          Words{"study", "formats", scene_file("planes"), "--format", "e6m15", "--size", "8", "--samples", "1", "-o",
+                folder / "formats", "-q"},
+          Words{"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
+          small_render(folder, {"--frames", "1:2", "--turn", "90", "-q"})}) {
+        const Outcome run = succeed(words);
+        INFO(run.told());
+        CHECK(run.out.empty());
+        CHECK(run.err.empty());
+    }
+}
+
+}  // namespace
+}  // namespace raya
