@@ -15,6 +15,7 @@ void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) 
     refuse_options_of_other_machines(parsed, machine);
     if (ranks.first()) {  // who writes; elsewhere the folders need not be there
         check_trace(parsed, command.trace);
+        check_keep(parsed, command.keep);
         if (command.frames.given()) check_frames(command);
         check_targets(command);
     }
@@ -50,6 +51,7 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
     add_render_options(*command, options->render);
     add_tone_options(*command, options->tone);
     add_frame_options(*command, options->frames);
+    add_keep_options(*command, options->keep);
     add_torus_options(*command, options->torus);
     group.next(kCloserLook);
     add_value(*command, "--cost", options->cost,

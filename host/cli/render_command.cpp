@@ -28,9 +28,10 @@ void check_distinct(const std::string& scene, const std::vector<std::string>& ou
         if (file.empty() || file.starts_with("/dev/") || seen.insert(written_file(file)).second) continue;
         if (is_standard_stream(file))
             throw UserError("- is given twice: only one file can go to stdout; name files for the others");
-        throw UserError(fmt::format(
-            "{}: named twice; scene, image, cost image, mask, report, page, packets and trace must be different files",
-            file));
+        throw UserError(
+            fmt::format("{}: named twice; scene, image, cost image, mask, report, page, packets, trace and state must "
+                        "be different files",
+                        file));
     }
 }
 
@@ -62,7 +63,7 @@ void check_targets(const RenderCommand& command) {
     if (!packets.empty()) check_packets(packets);
     if (!command.torus.replay.empty()) check_replay(command.torus);
     check_distinct(command.render.scene, {command.image, command.cost, command.mask, command.report, command.page,
-                                          packets, command.trace.file});
+                                          packets, command.trace.file, command.keep.file});
     if (!command.page.empty()) check_page_target("--page", command.page);
     // Drivers first: the first TBB that is loaded serves all, and Intel's runtime wants a newer one than OpenImageIO's.
     all_devices();

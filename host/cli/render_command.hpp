@@ -4,6 +4,7 @@
 #include <string>
 
 #include "host/cli/frame_options.hpp"
+#include "host/cli/keep_options.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/render_run.hpp"
 #include "host/cli/render_watch.hpp"
@@ -26,6 +27,7 @@ struct RenderCommand {
     std::string image, cost, mask, report, page;
     ToneOptions tone;
     FrameOptions frames;
+    KeepOptions keep;
     TraceOptions trace;
     bool profile = false, summary = true;
 

@@ -92,6 +92,7 @@ void check_frames(const RenderCommand& command) {
     const std::pair<const char*, bool> of_one_image[] = {{"--page", !command.page.empty()},
                                                          {"--trace", !command.trace.file.empty()},
                                                          {"--profile", command.profile},
+                                                         {"--keep", !command.keep.file.empty()},
                                                          {"--packets", !command.torus.packets.empty()},
                                                          {"--replay", !command.torus.replay.empty()}};
     for (const auto& [option, given] : of_one_image)

@@ -94,13 +94,15 @@ std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderR
     RingRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
-    const RingResult result = renderer.render(run.progress.callback());
+    const StateFile state(command.keep);
+    const RingResult result = renderer.render(run.progress.callback(), state.keeping());
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "pes", result);
     watch.gather(session, ranks);
     if (!ranks.first()) return {};
     run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
+    report.measured.earlier_s = result.earlier_s;
     watch.steps().during("write images", [&] { write_images(command, result, image_attributes(report, scene.name)); });
     if (command.roofline()) {
         run.progress.stage("measuring the device's peak");
@@ -109,6 +111,7 @@ std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderR
     run.progress.end();
     report.warnings = input.warnings.texts();
     watch.steps().during("write report", [&] { write_report(command, report); });
+    state.remove();
     const ProgressBar tracing(watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
     return report;

@@ -86,7 +86,7 @@ constexpr const char* kNoPixels =
 constexpr const char* kNoNeighbours =
     "no node holds pixels that it could compare with their neighbours; leave it out, or choose a ring: --machine "
     "grande";
-constexpr std::array<Foreign, 11> kOfRings = {
+constexpr std::array<Foreign, 12> kOfRings = {
     {{"--mapping", kNoPixels},
      {"--offset", kNoPixels},
      {"--fold", kNoPixels},
@@ -98,7 +98,10 @@ constexpr std::array<Foreign, 11> kOfRings = {
      {"--mask", kNoNeighbours},
      {"--cost",
       "many nodes work for a pixel, and none of them knows its cost; leave it out, or choose a ring: --machine grande"},
-     {"--accel", "its voxels are the grid; cut the scene finer with --voxels AxBxC"}}};
+     {"--accel", "its voxels are the grid; cut the scene finer with --voxels AxBxC"},
+     {"--keep",
+      "its packets are on their way between nodes at any moment; leave it out, or choose a ring, whose picture is the "
+      "same: --machine grande"}}};
 
 constexpr const char* kNoNodes =
     "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";

@@ -97,6 +97,7 @@ struct RenderReport {
         std::vector<LabelSummary> commands;
         std::vector<ProgramBuild> builds{};  // of --profile, as the next
         std::optional<Roofline> roofline{};
+        double earlier_s = 0;  // of render_s: of runs whose state this one went on with
     } measured;
 };
 

@@ -1,5 +1,8 @@
 // Marks the pixels that differ from a neighbour, over ring or bus (kernels/ring/contrast.cl).
 #pragma once
+#include <cstdint>
+#include <span>
+
 #include "host/kernels/kernels.hpp"
 #include "host/ring/exchange_setup.hpp"
 #include "host/ring/neighbour_exchange.hpp"
@@ -22,6 +25,9 @@ class RingContrast {
 
     /// [PE][capacity]: 1 where a pixel is marked, else 0.
     const Buffer<std::uint8_t>& marks() const { return marks_; }
+
+    /// Takes marks that were made before.
+    void set_marks(std::span<const std::uint8_t> marks) { setup_.session.write("set marks", marks_, marks); }
 
   private:
     void mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity,

@@ -88,21 +88,24 @@ void RingRenderer::build_exchange(KernelOptions options) {
     counters_.push_back(tracer_->make_counters(kSupersamplePass));
 }
 
-RingResult RingRenderer::render(const ProgressCallback& progress) {
+RingResult RingRenderer::render(const ProgressCallback& progress, const RingKeeping* keeping) {
     session_.clear_profile();
     communication_ = {};
     const StepLog::Step rendering = session_.step("render");
-    const Clock::time_point start = Clock::now();
+    started_ = Clock::now();
+    keeping_ = keeping;
     const RankTraffic before = ranks_.traffic();
     RingResult result;
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
+    resume(result);
     for (std::uint32_t block = 0; block < share_; block += memory_.block_pixels) render_block(block, result, progress);
     place_gathered(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
     if (settings_.dynamic && ranks_.first()) simulate_schedule(result);
-    result.render_s = seconds_since(start);
+    result.render_s = earlier_s_ + seconds_since(started_);
+    result.earlier_s = earlier_s_;
     result.traffic = ranks_.traffic() - before;
     gathered_ = {};
     describe(result);
@@ -112,14 +115,17 @@ RingResult RingRenderer::render(const ProgressCallback& progress) {
 // A block of each PE's share, as much as its memory holds: a window of the device's after another.
 void RingRenderer::render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress) {
     const std::uint32_t end = std::min(share_, block + memory_.block_pixels);
-    bus_.begin_gather();
+    if (resumed_ && resumed_->window >= end) return;
+    if (!resumed_) bus_.begin_gather();
     for (std::uint32_t window = block; window < end; window += window_) {
+        if (resumed_ && resumed_->window > window) continue;
         const PixelRange range{window, window, std::min(end, window + window_)};
         trace(range, result, progress);
         if (filter_) filter_->apply(pixels_, *exchange_);
-        if (contrast_) supersample(progress);
+        if (contrast_) supersample(result, progress);
         gather(range, result);
         collect_costs(range, result);
+        resumed_.reset();
     }
 }
 
@@ -146,19 +152,26 @@ void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCal
         ranks_.look();
         if (progress) progress((range.begin + done * (range.end - range.begin)) / share_ / passes);
     };
-    tracer_->trace(kTracePass, broadcast_, range, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
-                   progress || listens() ? report : ProgressCallback{}, [&] { make_room(result); });
+    in_bands(0, range, result, [&](PixelRange band) {
+        range = band;
+        tracer_->trace(kTracePass, broadcast_, band, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
+                       progress || listens() ? report : ProgressCallback{}, [&] { make_room(result); });
+    });
 }
 
-void RingRenderer::supersample(const ProgressCallback& progress) {
+void RingRenderer::supersample(RingResult& result, const ProgressCallback& progress) {
     const StepLog::Step step = session_.step(kSupersamplePass);
-    contrast_->apply(pixels_, *exchange_);
+    if (!resumed_ || resumed_->pass == 0) contrast_->apply(pixels_, *exchange_);
+    PixelRange range{0, 0, share_};
     const auto report = [&](double done) {
         ranks_.look();
-        if (progress) progress((1 + done) / 2);
+        if (progress) progress((1 + (range.begin + done * (range.end - range.begin)) / share_) / 2);
     };
-    tracer_->trace(kSupersamplePass, broadcast_, {0, 0, share_}, settings_.antialias.points, contrast_->marks(),
-                   pixels_, counters_[1], progress || listens() ? report : ProgressCallback{});
+    in_bands(1, range, result, [&](PixelRange band) {
+        range = band;
+        tracer_->trace(kSupersamplePass, broadcast_, band, settings_.antialias.points, contrast_->marks(), pixels_,
+                       counters_[1], progress || listens() ? report : ProgressCallback{});
+    });
 }
 
 // Work-groups run to their end, so what a PE takes while the machine runs cannot be seen on a device; but it follows

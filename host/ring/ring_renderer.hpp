@@ -1,7 +1,10 @@
 // Renders a scene on a model of a ring machine: the host drives PEs, bus and ring; the kernels are the PEs.
 #pragma once
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include "host/ring/ring_job.hpp"
 #include "host/ring/ring_result.hpp"
 #include "host/ring/ring_settings.hpp"
+#include "host/ring/ring_state.hpp"
 #include "host/ring/tracer.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
@@ -28,7 +32,9 @@ class RingRenderer {
 
     /// One image. May be called again: the pixels are the same, the times are those of this call. In other ranks than 0
     /// the result is of this rank alone, and has no image.
-    RingResult render(const ProgressCallback& progress = {});
+    /// `keeping`, where given, is of one rank, and the image is traced in bands, after each of which what is done may
+    /// be kept; a render that goes on makes the same image and counts the same, and its seconds are those of all runs.
+    RingResult render(const ProgressCallback& progress = {}, const RingKeeping* keeping = nullptr);
 
     /// By what the scene's lengths are multiplied.
     const LengthScale& scale() const { return job_.scale; }
@@ -41,7 +47,13 @@ class RingRenderer {
     void prepare(RingResult& result);
     void render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress);
     void trace(PixelRange range, RingResult& result, const ProgressCallback& progress);
-    void supersample(const ProgressCallback& progress);
+    void supersample(RingResult& result, const ProgressCallback& progress);
+    void in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
+                  const std::function<void(PixelRange)>& trace);
+    StateSettings state_settings() const;
+    RingState state(const RingResult& result);
+    void resume(RingResult& result);
+    void keep(std::uint32_t pass, PixelRange range, RingResult& result);
     void make_room(RingResult& result);
     void gather(PixelRange range, RingResult& result);
     void place_gathered(RingResult& result);
@@ -76,6 +88,13 @@ class RingRenderer {
     std::unique_ptr<NeighbourExchange> exchange_;
     std::unique_ptr<RingFilter> filter_;
     std::unique_ptr<RingContrast> contrast_;
+
+    // Of a render that keeps its state.
+    const RingKeeping* keeping_ = nullptr;
+    std::optional<RingState> resumed_;  // until the window is done in which it stood
+    std::uint32_t band_ = 0;            // pixels of each PE's share
+    double earlier_s_ = 0;              // of earlier runs
+    std::chrono::steady_clock::time_point started_;
 };
 
 }  // namespace raya

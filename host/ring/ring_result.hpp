@@ -51,6 +51,7 @@ struct RingResult {
     std::string tuned;  // where lanes, group and what goes with them come from (host/kernels/tuned.hpp)
     // Measured on the host: to make the grid or tree; kernel build; everything after it.
     double accel_s = 0, build_s = 0, render_s = 0;
+    double earlier_s = 0;  // of render_s what runs took whose state this one went on with
     std::vector<LabelSummary> commands;
 
     /// Modelled cycles of each pixel in all phases. std::logic_error where nobody asked for them.

@@ -24,6 +24,7 @@ warnings.simplefilter("ignore", DeprecationWarning)  # RefResolver, which Debian
 SCENES = ROOT / "scenes"
 # Described and not seen here, with the reason.
 SELDOM = {
+    "render.json: measured.earlier_s": "of a render that was stopped: tests/cli/test_keep.cpp",
     "bench.json: rows[].no_roofline": "of devices that do not time their commands",
     "bench-tune.json: results[].configuration.trees": "a knob of the grid, whose search takes long",
     "bench-tune.json: results[].configuration.beams": "likewise",

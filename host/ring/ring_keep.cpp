@@ -1,0 +1,130 @@
+// How a render on a ring machine is cut into bands, keeps what is done between them, and goes on with it.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/error.hpp"
+#include "host/files/bytes_hash.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/version.hpp"
+
+namespace raya {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kFirstBands = 64;    // into which a share is cut at first
+constexpr std::uint32_t kFewestOfLane = 16;  // pixels: fewer leave lanes empty at every band's end
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::string antialias_text(const Antialias& a) {
+    return fmt::format("{}, {}, points {}, threshold {}", antialias_name(a.method), exchange_name(a.exchange),
+                       points_name(a.points), a.threshold);
+}
+
+std::string words_hash(const std::vector<std::uint32_t>& words) {
+    return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
+}
+
+// As many more pixels as the last band had, or half or four times as many: what takes about the time that is aimed at.
+std::uint32_t next_band(std::uint32_t band, double seconds, double aim) {
+    const double factor = std::clamp(aim / std::max(seconds, 1e-6), 0.5, 4.0);
+    return static_cast<std::uint32_t>(std::clamp(band * factor, 1.0, 1e9));
+}
+
+}  // namespace
+
+void RingRenderer::in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
+                            const std::function<void(PixelRange)>& trace) {
+    if (keeping_ == nullptr) return trace(range);
+    if (resumed_ && resumed_->pass > pass) return;
+    if (resumed_ && resumed_->pass == pass) range.begin = resumed_->next;
+    while (range.begin < range.end) {
+        const Clock::time_point start = Clock::now();
+        PixelRange band = range;
+        band.end = range.begin + std::min(band_, range.end - range.begin);
+        trace(band);
+        band_ = next_band(band_, seconds_since(start), keeping_->band_s);
+        range.begin = band.end;
+        if (keeping_->due()) keep(pass, range, result);
+    }
+}
+
+StateSettings RingRenderer::state_settings() const {
+    const raya_mapping& m = settings_.mapping;
+    return {{"version of raya", raya_version()},
+            {"image", fmt::format("{} x {}", m.width, m.height)},
+            {"mapping", fmt::format("{} on {} PEs", mapping_text(m), m.pes)},
+            {"format", format_name(settings_.format)},
+            {"anti-aliasing", antialias_text(settings_.antialias)},
+            {"bounces", std::to_string(settings_.bounces)},
+            {"choice whether costs are kept", keeps_costs() ? "yes" : "no"},
+            {"group", std::to_string(settings_.kernels.group_size)},
+            {"part of the PEs' memories on the device", std::to_string(window_)},
+            {"scene or camera", words_hash(job_.job.words())}};
+}
+
+RingState RingRenderer::state(const RingResult& result) {
+    RingState s;
+    s.seconds = earlier_s_ + seconds_since(started_);
+    s.communication = communication_;
+    s.image = result.image.rgb;
+    s.pixels.resize(pixels_.size());
+    session_.read("keep pixels", pixels_, s.pixels);
+    if (contrast_) {
+        s.marks.resize(contrast_->marks().size());
+        session_.read("keep marks", contrast_->marks(), s.marks);
+    }
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        RingState::Pass pass;
+        pass.cycles.resize(counters_[i].cycles.size());
+        pass.events.resize(counters_[i].events.size());
+        session_.read("keep counters", counters_[i].cycles, pass.cycles);
+        session_.read("keep counters", counters_[i].events, pass.events);
+        if (result.phases[i].kept_cost) pass.costs = result.phases[i].kept_cost->cycles;
+        s.passes.push_back(std::move(pass));
+    }
+    if (result.all.kept_cost) s.all_costs = result.all.kept_cost->cycles;
+    return s;
+}
+
+void RingRenderer::keep(std::uint32_t pass, PixelRange range, RingResult& result) {
+    const StepLog::Step step = session_.step("keep state");
+    make_room(result);  // and place what is on its way
+    RingState s = state(result);
+    s.pass = pass;
+    s.window = range.block;
+    s.next = range.begin;
+    s.share = (pass + 1.0 * range.begin / share_) / static_cast<double>(counters_.size());
+    keeping_->keep(s, state_settings());
+}
+
+void RingRenderer::resume(RingResult& result) {
+    resumed_.reset();
+    earlier_s_ = 0;
+    if (keeping_ == nullptr) return;
+    if (ranks_.many()) throw UserError("a render of several ranks does not keep its state; start it without mpirun");
+    const std::uint32_t at_once = settings_.kernels.lanes * settings_.kernels.group_size;
+    band_ = std::max(share_ / kFirstBands, kFewestOfLane * at_once);
+    if (keeping_->resume) resumed_ = keeping_->resume(state_settings());
+    if (!resumed_) return;
+    const StepLog::Step step = session_.step("resume");
+    make_room(result);
+    RingState& s = *resumed_;
+    earlier_s_ = s.seconds;
+    communication_ = s.communication;
+    result.image.rgb = std::move(s.image);
+    session_.write("resume", pixels_, s.pixels);
+    if (contrast_) contrast_->set_marks(s.marks);
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        session_.write("resume", counters_[i].cycles, s.passes[i].cycles);
+        session_.write("resume", counters_[i].events, s.passes[i].events);
+        if (result.phases[i].kept_cost) result.phases[i].kept_cost->cycles = std::move(s.passes[i].costs);
+    }
+    if (result.all.kept_cost) result.all.kept_cost->cycles = std::move(s.all_costs);
+}
+
+}  // namespace raya

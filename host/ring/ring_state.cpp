@@ -1,0 +1,122 @@
+#include "host/ring/ring_state.hpp"
+
+#include <fmt/core.h>
+
+#include <bit>
+#include <cstring>
+#include <span>
+
+#include "host/error.hpp"
+#include "host/files/bytes_hash.hpp"
+
+namespace raya {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "states are written as they lie in memory");
+
+constexpr std::string_view kMagic = "raya state 1\n";
+constexpr std::size_t kHashLetters = 32;
+
+class Writer {
+  public:
+    explicit Writer(std::string bytes) : bytes_(std::move(bytes)) {}
+
+    template <class T>
+    void put(const std::vector<T>& values) {
+        const std::uint64_t count = values.size();
+        put_raw(&count, sizeof count);
+        put_raw(values.data(), count * sizeof(T));
+    }
+    void put_raw(const void* from, std::size_t bytes) { bytes_.append(static_cast<const char*>(from), bytes); }
+    std::string finish() { return bytes_ + bytes_hash(bytes_); }
+
+  private:
+    std::string bytes_;
+};
+
+class Reader {
+  public:
+    explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+
+    template <class T>
+    void take(std::vector<T>& values) {
+        std::uint64_t count = 0;
+        take_raw(&count, sizeof count);
+        if (count > bytes_.size() / sizeof(T)) throw UserError("it is damaged");
+        values.resize(count);
+        take_raw(values.data(), count * sizeof(T));
+    }
+    void take_raw(void* to, std::size_t bytes) {
+        if (bytes > bytes_.size()) throw UserError("it is damaged");
+        if (bytes > 0) std::memcpy(to, bytes_.data(), bytes);
+        bytes_.remove_prefix(bytes);
+    }
+
+  private:
+    std::string_view bytes_;
+};
+
+// All of a state's vectors, in one order for both ways.
+template <class State, class Each>
+void for_each_vector(State& state, const Each& each) {
+    each(state.image);
+    each(state.pixels);
+    each(state.marks);
+    each(state.all_costs);
+    for (auto& pass : state.passes) {
+        each(pass.cycles);
+        each(pass.events);
+        each(pass.costs);
+    }
+}
+
+Json header_of(const RingState& s, const StateSettings& settings) {
+    Json of = Json::object();
+    for (const auto& [name, value] : settings) of[name] = value;
+    return {{"of", of},         {"pass", s.pass},       {"window", s.window},       {"next", s.next},
+            {"share", s.share}, {"seconds", s.seconds}, {"passes", s.passes.size()}};
+}
+
+// What is compared first is what a reader understands best.
+void check_settings(const Json& of, const StateSettings& settings) {
+    for (const auto& [name, value] : settings) {
+        const Json* const kept = of.find(name);
+        if (kept == nullptr || kept->text() != value)
+            throw UserError(fmt::format("it is of another render: its {} is {}, not {}", name,
+                                        kept == nullptr ? "not told" : kept->text(), value));
+    }
+}
+
+}  // namespace
+
+std::string state_bytes(const RingState& state, const StateSettings& settings) {
+    const std::string header = header_of(state, settings).dump();
+    Writer to(fmt::format("{}{}\n", kMagic, header));
+    to.put_raw(&state.communication, sizeof state.communication);
+    for_each_vector(state, [&](const auto& values) { to.put(values); });
+    return to.finish();
+}
+
+RingState read_state(std::string_view bytes, const StateSettings& settings) {
+    if (!bytes.starts_with(kMagic)) throw UserError("it is no state of a render");
+    if (bytes.size() < kMagic.size() + kHashLetters ||
+        bytes_hash(bytes.substr(0, bytes.size() - kHashLetters)) != bytes.substr(bytes.size() - kHashLetters))
+        throw UserError("it is damaged");
+    bytes = bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHashLetters);
+    const std::size_t end = bytes.find('\n');
+    const Json header = Json::parse(std::string(bytes.substr(0, end)));
+    check_settings(header.at("of"), settings);
+    RingState state;
+    state.pass = static_cast<std::uint32_t>(header.at("pass").whole(1));
+    state.window = static_cast<std::uint32_t>(header.at("window").whole(UINT32_MAX));
+    state.next = static_cast<std::uint32_t>(header.at("next").whole(UINT32_MAX));
+    state.share = header.at("share").number();
+    state.seconds = header.at("seconds").number();
+    state.passes.resize(header.at("passes").whole(2));
+    Reader from(bytes.substr(end + 1));
+    from.take_raw(&state.communication, sizeof state.communication);
+    for_each_vector(state, [&](auto& values) { from.take(values); });
+    return state;
+}
+
+}  // namespace raya

@@ -1,0 +1,88 @@
+// --keep and --resume: a render that was stopped goes on, and nothing that is kept is lost by mistake.
+#include <filesystem>
+
+#include "host/files/whole_file.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+Words render_of(const ScratchFolder& folder, const Words& more = {}) {
+    Words words = {"render",         scene_file("centre"), "--size",         "128", "--lanes", "1", "-o",
+                   folder / "x.pfm", "--report",           folder / "x.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+TEST_CASE("an interrupted render goes on, with the same picture", "[cli][keep]") {
+    const ScratchFolder folder;
+    REQUIRE(run_raya(render_of(folder)).code == 0);
+    const std::string picture = file_contents(folder / "x.pfm");
+    const Words keep = {"--keep", folder / "s.rst", "--keep-every", "0"};
+    // Stopped again and again, until a state is there; a fast machine may have ended before.
+    bool interrupted = false;
+    for (int ms = 200; ms <= 1600 && !interrupted; ms *= 2) {
+        fs::remove(folder / "x.pfm");
+        fs::remove(folder / "s.rst");
+        Surroundings around;
+        around.signal = SIGINT;
+        around.signal_after_ms = ms;
+        const Outcome run = run_raya(render_of(folder, keep), around);
+        INFO(run.told());
+        REQUIRE((run.code == 0 || run.code == 128 + SIGINT));
+        if (run.code == 0) {
+            CHECK_FALSE(fs::exists(folder / "s.rst"));
+            CHECK((file_contents(folder / "x.pfm") == picture));
+        }
+        interrupted = run.code != 0 && fs::exists(folder / "s.rst");
+    }
+    if (!interrupted) WARN("never interrupted between its first state and its end");
+    Words resume = keep;
+    resume.emplace_back("--resume");
+    const Outcome run = run_raya(render_of(folder, resume));
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK((file_contents(folder / "x.pfm") == picture));
+    CHECK_FALSE(fs::exists(folder / "s.rst"));
+    const Document report = Document::parse(file_contents(folder / "x.json"));
+    CHECK(report["measured"].contains("earlier_s") == interrupted);
+    if (!interrupted) return;
+    CHECK_THAT(run.err, Catch::Contains("goes on at "));
+    CHECK(report["measured"]["earlier_s"] < report["measured"]["render_s"]);
+}
+
+TEST_CASE("what cannot be kept or resumed is refused", "[cli][keep]") {
+    const ScratchFolder folder;
+    const auto refused = [&](const Words& more, const Words& message) {
+        check_refused(folder, render_of(folder, more), 2, message);
+    };
+    refused({"--resume"}, {"--resume", "--keep FILE.rst"});
+    refused({"--keep-every", "5"}, {"--keep-every", "--keep FILE.rst"});
+    refused({"--keep", "-"}, {"--keep -"});
+    refused({"--keep", folder / "s.rst", "--keep-every", "-1"}, {"--keep-every -1", "0..86400"});
+    refused({"--keep", folder / "none/s.rst"}, {"none"});
+    refused({"--keep", folder / "x.pfm"}, {"named twice"});
+    refused({"--keep", folder / "s.rst", "--machine", "torus"}, {"--keep", "--machine torus", "grande"});
+    refused({"--keep", folder / "s.rst", "--frames", "1:2", "--turn", "90"}, {"--keep", "one image"});
+}
+
+TEST_CASE("a file that is there is neither written over nor taken for a state", "[cli][keep]") {
+    const ScratchFolder folder;
+    const std::string file = folder / "s.rst";
+    write_whole_file(file, "hours of work");
+    const auto run = [&](const Words& more) { return run_raya(render_of(folder, more)); };
+    const Outcome kept = run({"--keep", file});
+    CHECK(kept.code == 2);
+    CHECK_THAT(kept.err, Catch::Contains("give --resume"));
+    const Outcome resumed = run({"--keep", file, "--resume"});
+    CHECK(resumed.code == 2);
+    CHECK_THAT(resumed.err, Catch::Contains("no state of a render"));
+    CHECK(file_contents(file) == "hours of work");
+    CHECK(folder.entries() == 1);
+}
+
+}  // namespace
+}  // namespace raya

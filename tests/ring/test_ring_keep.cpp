@@ -1,0 +1,189 @@
+// Renders that are stopped between two bands, anywhere, and go on from what they kept: the same image and counts.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "host/error.hpp"
+#include "host/ring/ring_state.hpp"
+#include "tests/ring/render_scene.hpp"
+
+namespace raya {
+namespace {
+
+struct Stopped {};
+
+/// Keeps every band's state as bytes, and stops the render after `bands` of them.
+class Keeper {
+  public:
+    explicit Keeper(int bands = 1 << 30, std::string from = "") : left_(bands), kept_(std::move(from)) {
+        keeping_.band_s = 0;  // as few pixels as can be
+        keeping_.due = [] { return true; };
+        keeping_.keep = [this](const RingState& state, const StateSettings& settings) {
+            kept_ = state_bytes(state, settings);
+            ++count_;
+            if (--left_ == 0) throw Stopped();
+        };
+        keeping_.resume = [this](const StateSettings& settings) {
+            return kept_.empty() ? std::optional<RingState>() : read_state(kept_, settings);
+        };
+    }
+    const RingKeeping* keeping() const { return &keeping_; }
+    const std::string& kept() const { return kept_; }
+    int count() const { return count_; }
+
+  private:
+    int left_, count_ = 0;
+    std::string kept_;
+    RingKeeping keeping_;
+};
+
+void check_same(const RingResult& a, const RingResult& b) {
+    CHECK(pixel_hash(a.image) == pixel_hash(b.image));
+    CHECK((a.mask.rgb == b.mask.rgb));
+    CHECK(a.recomputed == b.recomputed);
+    CHECK(a.all.events == b.all.events);
+    CHECK(a.all.load.per_pe == b.all.load.per_pe);
+    CHECK((a.cost().cycles == b.cost().cycles));
+    REQUIRE(a.phases.size() == b.phases.size());
+    for (std::size_t i = 0; i < a.phases.size(); ++i) {
+        CHECK(a.phases[i].events == b.phases[i].events);
+        CHECK((a.phases[i].cost().cycles == b.phases[i].cost().cycles));
+    }
+    const Communication &x = a.communication, &y = b.communication;
+    CHECK(x.broadcasts == y.broadcasts);
+    CHECK(x.rotations == y.rotations);
+    CHECK(x.rotation_words == y.rotation_words);
+    CHECK(x.gathers == y.gathers);
+    CHECK(x.gather_words == y.gather_words);
+    CHECK(x.transfers == y.transfers);
+}
+
+RingSettings settings_for(AntialiasMethod method, std::uint64_t device_pixels) {
+    RingSettings settings =
+        settings_of({.width = 50, .height = 37, .pes = 7, .machine = "grande", .lanes = 4, .bounces = 3});
+    settings.keep_costs = true;
+    settings.antialias.method = method;
+    settings.device_pixels = device_pixels;
+    return settings;
+}
+
+TEST_CASE("a render that is stopped anywhere and goes on makes the same image and counts", "[ring][keep]") {
+    const std::uint32_t seed = 20;
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    Session session(choose_device(""));
+    session.keep_programs();
+    const Scene scene = project_scene("planes");
+    const std::pair<AntialiasMethod, std::uint64_t> cases[] = {{AntialiasMethod::kNone, 1 << 22},
+                                                               {AntialiasMethod::kNone, 500},
+                                                               {AntialiasMethod::kFilter, 1 << 22},
+                                                               {AntialiasMethod::kSupersample, 1 << 22}};
+    for (const auto& [method, device_pixels] : cases) {
+        CAPTURE(antialias_name(method), device_pixels);
+        const RingSettings settings = settings_for(method, device_pixels);
+        const RingResult whole = RingRenderer(session, scene, settings).render();
+        Keeper to_end;
+        const RingResult kept = RingRenderer(session, scene, settings).render({}, to_end.keeping());
+        check_same(kept, whole);
+        CHECK(kept.earlier_s == 0);
+        REQUIRE(to_end.count() > 3);
+        for (int stop = 1; stop <= to_end.count(); stop += 1 + static_cast<int>(random() % 3)) {
+            CAPTURE(stop, to_end.count());
+            Keeper first(stop);
+            CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.keeping()), Stopped);
+            Keeper second(1 + static_cast<int>(random() % 2), first.kept());  // and once more, where bands are left
+            std::string state = first.kept();
+            try {
+                RingRenderer(session, scene, settings).render({}, second.keeping());
+            } catch (const Stopped&) {
+                state = second.kept();
+            }
+            Keeper last(1 << 30, state);
+            const RingResult resumed = RingRenderer(session, scene, settings).render({}, last.keeping());
+            check_same(resumed, whole);
+            CHECK(resumed.earlier_s > 0);
+            CHECK(resumed.render_s > resumed.earlier_s);
+            REQUIRE(last.count() < to_end.count());  // what was done is not done again
+        }
+    }
+}
+
+TEST_CASE("one renderer renders with and without a state, in any order", "[ring][keep]") {
+    Session session(choose_device(""));
+    const RingSettings settings = settings_for(AntialiasMethod::kSupersample, 1 << 22);
+    RingRenderer renderer(session, project_scene("planes"), settings);
+    const RingResult whole = renderer.render();
+    Keeper first(3);
+    CHECK_THROWS_AS(renderer.render({}, first.keeping()), Stopped);
+    check_same(renderer.render(), whole);
+    Keeper last(1 << 30, first.kept());
+    check_same(renderer.render({}, last.keeping()), whole);
+    const RingResult again = renderer.render();
+    check_same(again, whole);
+    CHECK(again.earlier_s == 0);
+}
+
+TEST_CASE("a state of another render is refused by what is different", "[ring][keep]") {
+    Session session(choose_device(""));
+    const Scene scene = project_scene("planes");
+    const RingSettings settings = settings_for(AntialiasMethod::kNone, 1 << 22);
+    Keeper first(2);
+    CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.keeping()), Stopped);
+    const auto refused = [&](const Scene& other, const RingSettings& changed, const char* why) {
+        CAPTURE(why);
+        Keeper second(1 << 30, first.kept());
+        RingRenderer renderer(session, other, changed);
+        CHECK_THROWS_WITH(renderer.render({}, second.keeping()), Catch::Contains(why));
+    };
+    Scene moved = scene;
+    moved.view.from.x += 1e-3;
+    refused(moved, settings, "scene or camera");
+    RingSettings changed = settings;
+    changed.bounces = 2;
+    refused(scene, changed, "its bounces is 3, not 2");
+    changed = settings;
+    changed.keep_costs = false;
+    refused(scene, changed, "costs");
+    changed = settings;
+    changed.format = parse_format("e8m21");
+    refused(scene, changed, "format");
+    changed = settings;
+    changed.kernels.group_size = 2;
+    refused(scene, changed, "group");
+    refused(scene, settings_for(AntialiasMethod::kFilter, 1 << 22), "anti-aliasing");
+    refused(scene, settings_for(AntialiasMethod::kNone, 100), "on the device");
+}
+
+TEST_CASE("a state that is damaged anywhere is refused", "[ring][keep]") {
+    const std::uint32_t seed = 21;
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    RingState state;
+    state.window = 5;
+    state.next = 7;
+    state.share = 0.25;
+    state.image = {1, 2, 3};
+    state.pixels = {4};
+    state.passes.resize(1);
+    state.passes[0].events = {1, 2};
+    const StateSettings settings = {{"name", "value \"x\""}};
+    const std::string bytes = state_bytes(state, settings);
+    const RingState read = read_state(bytes, settings);
+    CHECK(read.next == 7);
+    CHECK((read.image == state.image));
+    CHECK((read.passes[0].events == state.passes[0].events));
+    CHECK(state_bytes(read, settings) == bytes);
+    for (int i = 0; i < 500; ++i) {
+        std::string damaged = bytes;
+        if (random() % 4 == 0)
+            damaged.resize(random() % bytes.size());
+        else
+            damaged[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
+        CAPTURE(i);
+        CHECK_THROWS_AS(read_state(damaged, settings), UserError);
+    }
+    CHECK_THROWS_WITH(read_state(bytes, {{"name", "other"}}), Catch::Contains("its name is value \"x\", not other"));
+    CHECK_THROWS_WITH(read_state(bytes, {{"new", "one"}}), Catch::Contains("not told"));
+}
+
+}  // namespace
+}  // namespace raya
