@@ -16,6 +16,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -180,6 +181,16 @@ inline std::string squeezed(const std::string& text) {
     std::istringstream words(text);
     for (std::string word; words >> word;) all += (all.empty() ? "" : " ") + word;
     return all;
+}
+
+/// Whether a line of the text is what the regular expression says. Of one line, as std::regex goes as deep as its text
+/// is long, and some are too long for the stack.
+inline bool has_line(const std::string& text, const std::string& pattern) {
+    const std::regex regex(pattern);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (std::regex_match(line, regex)) return true;
+    return false;
 }
 
 inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
