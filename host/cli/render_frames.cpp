@@ -34,11 +34,11 @@ std::vector<std::string> files_of(const RenderCommand& one) {
 
 // All that a frame follows from beside its camera: the scene and its lights, what was asked for, the program.
 std::string settings_of(const CLI::App& parsed, const Scene& scene) {
-    static const std::set<std::string> kOther = {"SCENE",  "--output", "--cost",        "--mask",  "--report",
-                                                 "--turn", "--frames", "--camera-path", "--quiet", "--verbose"};
+    static const std::set<std::string> neutral = {"SCENE",  "--output", "--cost",        "--mask",  "--report",
+                                                  "--turn", "--frames", "--camera-path", "--quiet", "--verbose"};
     std::string text = raya_version();
     for (const CLI::Option* option : parsed.get_options())
-        if (option->count() > 0 && !kOther.contains(option->get_name()))
+        if (option->count() > 0 && !neutral.contains(option->get_name()))
             text += fmt::format("\n{} {}", option->get_name(), fmt::join(option->results(), " "));
     const char* const build = std::getenv("RAYA_BUILD_OPTIONS");
     Scene objects = scene;
