@@ -168,13 +168,15 @@ TEST_CASE("reports with something missing or of another kind are refused, never 
         for (const auto& [path, value] : flat.items()) all.push_back(path);
         return all;
     }();
-    std::mt19937 random(20);
+    const std::uint32_t seed = 20;
+    CAPTURE(seed);
+    std::mt19937 random(seed);
     const std::vector<Document> odd = {nullptr, true, -1, 1e300, "<b>'\"&", Document::array(), Document::object()};
     int refused = 0, made = 0;
     const auto cases = static_cast<int>(quick_cases(300, 5000));
     for (int i = 0; i < cases; ++i) {
         Document::json_pointer place(paths[random() % paths.size()]);
-        for (unsigned up = random() % 3; up > 0 && !place.parent_pointer().empty(); --up)
+        for (auto up = random() % 3; up > 0 && !place.parent_pointer().empty(); --up)
             place = place.parent_pointer();
         Document report = good;
         report[place] = odd[random() % odd.size()];
