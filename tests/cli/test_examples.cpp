@@ -105,7 +105,7 @@ TEST_CASE("what is wrong in an example is seen", "[cli][help]") {
         CHECK(refusal_of(call) != "");
 }
 
-TEST_CASE("examples do what they say", "[cli][help]") {
+TEST_CASE("examples do what they say", "[.][long][cli][help]") {
     const ScratchFolder folder;
     fs::create_directory_symlink(RAYA_SOURCE_DIR "/scenes", folder / "scenes");
     fs::create_directory(folder / "bin");

@@ -128,7 +128,7 @@ TEST_CASE("a render's options stand where a reader looks for them", "[cli][help]
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
                                        [](const CommandText& one) { return one.name == "render"; });
     CHECK(groups_of(render) == Words{"Files", "Picture", "Camera and light", "Machine and mapping",
-                                     "Kernels and device", "Frames", "Torus machine", "Looking closer",
+                                     "Kernels and device", "Frames", "Long images", "Torus machine", "Looking closer",
                                      "Common options"});
     const std::vector<std::pair<std::string, std::string>> rows = {{"--output", "Files"},
                                                                    {"--strict", "Files"},

@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Words render_of(const ScratchFolder& folder, const Words& more = {}) {
-    Words words = {"render",         scene_file("centre"), "--size",         "128", "--lanes", "1", "-o",
+    Words words = {"render",         scene_file("centre"), "--size",         "256", "--lanes", "1", "-o",
                    folder / "x.pfm", "--report",           folder / "x.json"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
@@ -24,7 +24,7 @@ TEST_CASE("an interrupted render goes on, with the same picture", "[cli][keep]")
     const Words keep = {"--keep", folder / "s.rst", "--keep-every", "0"};
     // Stopped again and again, until a state is there; a fast machine may have ended before.
     bool interrupted = false;
-    for (int ms = 200; ms <= 1600 && !interrupted; ms *= 2) {
+    for (int ms = 40; ms <= 2000 && !interrupted; ms += ms / 2) {
         fs::remove(folder / "x.pfm");
         fs::remove(folder / "s.rst");
         Surroundings around;
