@@ -43,11 +43,14 @@ FrameEntry entry_of(const Json& json) {
     return e;
 }
 
-std::vector<FrameEntry> entries_of(const std::string& text) {
+std::map<std::uint32_t, FrameEntry> entries_of(const std::string& text) {
     const Json record = Json::parse(text);
     if (record.at("kind").text() != kKind) throw JsonError("another kind");
-    std::vector<FrameEntry> entries;
-    for (const Json& frame : record.at("frames").elements()) entries.push_back(entry_of(frame));
+    std::map<std::uint32_t, FrameEntry> entries;
+    for (const Json& json : record.at("frames").elements()) {
+        FrameEntry frame = entry_of(json);
+        entries[frame.number] = std::move(frame);
+    }
     return entries;
 }
 
@@ -74,22 +77,22 @@ FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) {
 
 const FrameEntry* FrameRecord::find(std::uint32_t number, const std::string& settings,
                                     const std::vector<std::string>& files) const {
-    const auto entry = std::ranges::find(entries_, number, &FrameEntry::number);
-    if (entry == entries_.end() || entry->settings != settings || entry->files.size() != files.size()) return nullptr;
+    const auto found = entries_.find(number);
+    if (found == entries_.end()) return nullptr;
+    const FrameEntry& entry = found->second;
+    if (entry.settings != settings || entry.files.size() != files.size()) return nullptr;
     const bool there = std::ranges::all_of(files, [&](const std::string& file) {
-        const auto known = std::ranges::find(entry->files, name_of(file), &std::pair<std::string, std::string>::first);
-        return known != entry->files.end() && hash_of_file(file) == known->second;
+        const auto known = std::ranges::find(entry.files, name_of(file), &std::pair<std::string, std::string>::first);
+        return known != entry.files.end() && hash_of_file(file) == known->second;
     });
-    return there ? &*entry : nullptr;
+    return there ? &entry : nullptr;
 }
 
 const FrameEntry& FrameRecord::add(FrameEntry entry, const std::vector<std::string>& files) {
     for (const std::string& file : files) entry.files.emplace_back(name_of(file), bytes_hash(read_file(file)));
-    std::erase_if(entries_, [&](const FrameEntry& old) { return old.number == entry.number; });
-    const auto behind = std::ranges::upper_bound(entries_, entry.number, {}, &FrameEntry::number);
-    const auto added = entries_.insert(behind, std::move(entry));
-    write();
-    return *added;
+    const auto added = entries_.insert_or_assign(entry.number, std::move(entry)).first;
+    if (Clock::now() - written_ >= 20 * writing_) write();
+    return added->second;
 }
 
 std::string FrameRecord::name_of(const std::string& file) const {
@@ -97,10 +100,13 @@ std::string FrameRecord::name_of(const std::string& file) const {
         fs::absolute(file_).parent_path().lexically_normal());
 }
 
-void FrameRecord::write() const {
+void FrameRecord::write() {
+    const Clock::time_point start = Clock::now();
     Json frames = Json::list();
-    for (const FrameEntry& entry : entries_) frames.push_back(json_of(entry));
+    for (const auto& [number, entry] : entries_) frames.push_back(json_of(entry));
     write_whole_file(file_, Json{{"kind", kKind}, {"raya", raya_version()}, {"frames", frames}}.dump(2) + "\n");
+    written_ = Clock::now();
+    writing_ = written_ - start;
 }
 
 std::string frame_record_file(const std::string& image) {

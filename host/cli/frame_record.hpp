@@ -1,8 +1,10 @@
 // What is kept of a sequence's frames beside them, so that a sequence that was stopped goes on, and one that was
 // changed keeps no stale frame.
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,15 +32,19 @@ class FrameRecord {
                            const std::vector<std::string>& files) const;
 
     /// Takes in a frame whose files have been written, `entry.files` aside, in place of an older one, and writes the
-    /// record.
+    /// record, unless that would take over a twentieth of the time: then a later one does, or write().
     const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
 
+    void write();
+
   private:
+    using Clock = std::chrono::steady_clock;
     std::string name_of(const std::string& file) const;
-    void write() const;
 
     std::filesystem::path file_;
-    std::vector<FrameEntry> entries_;  // by their numbers
+    std::map<std::uint32_t, FrameEntry> entries_;  // by their numbers
+    Clock::time_point written_{};
+    Clock::duration writing_{};  // that the last one took
 };
 
 /// Where the record of the frames of `image` lies: "turn-frames.json" of turn.png.

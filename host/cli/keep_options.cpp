@@ -33,8 +33,10 @@ void add_keep_options(CLI::App& command, KeepOptions& k) {
         ->type_name("FILE.rst");
     command.add_flag("--resume", k.resume,
                      "Go on with what --keep has kept of the same render; from the start where the file is not there");
-    add_value(command, "--keep-every", k.every_s,
-              "Seconds between two states at least, 0..86400; more where writing them takes over 5 % of the time")
+    add_value(
+        command, "--keep-every", k.every_s,
+        "Seconds between two states at least, 0..86400; more where writing them takes over 5 % of the time; 0: after "
+        "every band of pixels")
         ->type_name("SECONDS")
         ->capture_default_str();
 }

@@ -138,7 +138,9 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
         }
         run.progress.next_image();
     }
-    if (ranks.first()) tell(sums, frame_record_file(command.image));
+    if (!ranks.first()) return;
+    if (sums.rendered > 0) record->write();
+    tell(sums, frame_record_file(command.image));
 }
 
 }  // namespace raya

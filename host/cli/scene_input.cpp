@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/files/standard_streams.hpp"
@@ -10,6 +12,7 @@
 namespace raya {
 
 void Warnings::add(const std::string& text) {
+    if (std::ranges::find(texts_, text) != texts_.end()) return;  // of an earlier frame
     warn("warning: " + text);
     texts_.push_back(text);
 }

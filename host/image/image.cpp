@@ -8,6 +8,8 @@
 #include <new>
 #include <span>
 
+#include "host/files/bytes_hash.hpp"
+
 namespace raya {
 namespace {
 
@@ -28,10 +30,7 @@ class WordHash {
         flush();
         XXH128_canonical_t canonical;
         XXH128_canonicalFromHash(&canonical, XXH3_128bits_digest(state_.get()));
-        std::string text;
-        for (const unsigned char byte : canonical.digest)
-            for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
-        return text;
+        return hex_digits(canonical.digest);
     }
 
   private:

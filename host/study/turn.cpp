@@ -1,6 +1,7 @@
 // A turn round the scene: whether balance, and the offset that was chosen for one picture, hold from frame to frame.
 #include "host/scene/turn.hpp"
 
+#include <functional>
 #include <numeric>
 
 #include "host/ring/schedule.hpp"
@@ -38,20 +39,17 @@ struct Turn {
     std::uint32_t root;
     std::vector<FrameBalance> frames;
 
-    // In the mean of the frames for which `counts` holds.
-    template <class Counts>
-    double mean(std::uint32_t p, Counts counts) const {
+    // In the mean of the odd frames (1), or of the even ones (0), by which nothing is chosen.
+    template <class Figure>
+    double mean(std::uint32_t parity, Figure figure) const {
         double sum = 0;
         std::size_t n = 0;
         for (const FrameBalance& f : frames)
-            if (counts(f)) {
-                sum += f.u[p];
+            if (f.frame % 2 == parity) {
+                sum += std::invoke(figure, f);
                 ++n;
             }
         return sum / static_cast<double>(n);
-    }
-    double mean(std::uint32_t p) const {
-        return mean(p, [](const FrameBalance&) { return true; });
     }
 
     // The offset that is best in the first frame, and that which is best in the mean of the odd ones.
@@ -59,29 +57,19 @@ struct Turn {
     std::uint32_t of_half() const {
         std::vector<double> means;
         for (std::uint32_t p = 0; p < frames.front().u.size(); ++p)
-            means.push_back(mean(p, [](const FrameBalance& f) { return f.frame % 2 == 1; }));
+            means.push_back(mean(1, [p](const FrameBalance& f) { return f.u[p]; }));
         return static_cast<std::uint32_t>(std::ranges::min_element(means) - means.begin());
     }
 
-    // In the even frames, by which nothing was chosen.
     double judged(std::uint32_t p) const {
-        return mean(p, [](const FrameBalance& f) { return f.frame % 2 == 0; });
+        return mean(0, [p](const FrameBalance& f) { return f.u[p]; });
     }
     double judged_root() const { return judged(root); }
     double judged_first() const { return judged(of_first()); }
     double judged_half() const { return judged(of_half()); }
     double first_loses() const { return judged_first() - judged_half(); }
     double root_loses() const { return judged_root() - judged_half(); }
-    double each_its_own() const {
-        double sum = 0;
-        std::size_t n = 0;
-        for (const FrameBalance& f : frames)
-            if (f.frame % 2 == 0) {
-                sum += f.least();
-                ++n;
-            }
-        return sum / static_cast<double>(n);
-    }
+    double each_its_own() const { return mean(0, &FrameBalance::least); }
 
     std::vector<double> of(std::uint32_t p) const {
         return each(frames, [p](const FrameBalance& f) { return f.u[p]; });
@@ -166,7 +154,6 @@ std::vector<StudyTable> tables_of(std::size_t number, const Turns& t) {
     const std::string stem = number == 1 ? kName : fmt::format("{}-{}", kName, number);
     const std::uint32_t first = t.own.of_first(), half = t.own.of_half(), root = t.own.root;
     const auto at = [](std::uint32_t p) { return [p](const FrameBalance& f) { return f.u[p]; }; };
-    const auto count = [](const Turn& turn) { return turn.start; };
     return {table_of(stem, fmt::format("u of every frame of {}, from where the scene looks", t.scene), t.own.frames,
                      {{"frame", &FrameBalance::frame},
                       {"turned by", &FrameBalance::degrees, "degrees"},
@@ -178,7 +165,7 @@ std::vector<StudyTable> tables_of(std::size_t number, const Turns& t) {
                       {"its u", &FrameBalance::least}}),
             table_of(stem + "-starts", fmt::format("Turns of {} from random views: mean u of the even frames", t.scene),
                      t.others,
-                     {{"start", count},
+                     {{"start", &Turn::start},
                       {"best p of frame 1", &Turn::of_first},
                       {"its u", &Turn::judged_first},
                       {"best p of odd frames", &Turn::of_half},

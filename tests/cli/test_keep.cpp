@@ -22,7 +22,7 @@ TEST_CASE("an interrupted render goes on, with the same picture", "[cli][keep]")
     REQUIRE(run_raya(render_of(folder)).code == 0);
     const std::string picture = file_contents(folder / "x.pfm");
     const Words keep = {"--keep", folder / "s.rst", "--keep-every", "0"};
-    // Stopped again and again, until a state is there; a fast machine may have ended before.
+    // Stopped later and later, until a state is there.
     bool interrupted = false;
     for (int ms = 40; ms <= 2000 && !interrupted; ms += ms / 2) {
         fs::remove(folder / "x.pfm");
@@ -39,7 +39,7 @@ TEST_CASE("an interrupted render goes on, with the same picture", "[cli][keep]")
         }
         interrupted = run.code != 0 && fs::exists(folder / "s.rst");
     }
-    if (!interrupted) WARN("never interrupted between its first state and its end");
+    REQUIRE(interrupted);
     Words resume = keep;
     resume.emplace_back("--resume");
     const Outcome run = run_raya(render_of(folder, resume));
@@ -48,8 +48,6 @@ TEST_CASE("an interrupted render goes on, with the same picture", "[cli][keep]")
     CHECK((file_contents(folder / "x.pfm") == picture));
     CHECK_FALSE(fs::exists(folder / "s.rst"));
     const Document report = Document::parse(file_contents(folder / "x.json"));
-    CHECK(report["measured"].contains("earlier_s") == interrupted);
-    if (!interrupted) return;
     CHECK_THAT(run.err, Catch::Contains("goes on at "));
     CHECK(report["measured"]["earlier_s"] < report["measured"]["render_s"]);
 }
