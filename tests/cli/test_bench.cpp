@@ -103,7 +103,7 @@ TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cl
                       {"--tolerance"});
 }
 
-TEST_CASE("bench --ways times whole renders with and without a grid and on the torus, the same image", "[cli]") {
+TEST_CASE("bench --ways times whole renders with and without a grid and on the torus, the same image", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string base = folder / "ways.json";
     const Outcome run =

@@ -39,7 +39,7 @@ TEST_CASE("sizes for so many ranks have so many times the pixels, nearly", "[cli
     CHECK(size({100, 50}, 2) == std::pair(141u, 71u));  // 141.42, 70.71
 }
 
-TEST_CASE("bench --ranks renders one image on one rank and two, and tells of both", "[cli]") {
+TEST_CASE("bench --ranks renders one image on one rank and two, and tells of both", "[cli][slow]") {
     if (const std::string lack = Mpirun(nullptr, RAYA_PROGRAM).lack(); !lack.empty()) {
         WARN(lack);
         return;

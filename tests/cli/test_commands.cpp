@@ -1,9 +1,9 @@
 // What the commands print and make when all is well.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <sstream>
 #include <utility>
-
-#include <fmt/core.h>
 
 #include "host/version.hpp"
 #include "tests/cli/render_files.hpp"
@@ -176,7 +176,8 @@ TEST_CASE("the same seed generates the same bytes, another seed others", "[cli]"
     CHECK(file_contents(folder / "a") != file_contents(folder / "c"));
 }
 
-TEST_CASE("bench prints a row for each format and number of lanes, one image a format, and the operations", "[cli]") {
+TEST_CASE("bench prints a row for each format and number of lanes, one image a format, and the operations",
+          "[cli][slow]") {
     const std::string out = succeed({"bench", "--samples", "1", "--size", "64"}).out;
     INFO(out);
     CHECK_THAT(out, Catch::Contains("spheres.nff") && Catch::Contains("64 x 64 pixels, 256 PEs, 8 bounces"));

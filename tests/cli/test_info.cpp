@@ -75,7 +75,7 @@ void check_against_render(const Document& machine, const Document& need, const R
     if (accel["kind"] != "none") CHECK(accel["words"] == need["accel_words"]);
 }
 
-TEST_CASE("info's figures are those of renders on every machine with every accelerator", "[cli]") {
+TEST_CASE("info's figures are those of renders on every machine with every accelerator", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string random = folder / "random.nff";
     REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // 32 KB do not hold them
@@ -96,7 +96,7 @@ TEST_CASE("info's figures are those of renders on every machine with every accel
     CHECK(need_of(machine_of(info_of(random), "spa"), "none")["fits"] == false);
 }
 
-TEST_CASE("info follows a render's options", "[cli]") {
+TEST_CASE("info follows a render's options", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string scene = scene_file("glass");
     for (const Words& options :

@@ -99,7 +99,7 @@ long count_of(const std::string& text, const std::string& what) {
 }
 
 TEST_CASE("every command that takes long says so on a terminal within two seconds, and draws a few times a second",
-          "[cli]") {
+          "[cli][slow]") {
     const ScratchFolder folder;
     const Surroundings slow = failing_device("clCreateContext 1 slow");
     const Words render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4"};
@@ -122,7 +122,7 @@ TEST_CASE("every command that takes long says so on a terminal within two second
     }
 }
 
-TEST_CASE("with -q nothing is drawn on a terminal", "[cli][verbosity]") {
+TEST_CASE("with -q nothing is drawn on a terminal", "[cli][verbosity][slow]") {
     const ScratchFolder folder;
     const Surroundings slow = failing_device("clCreateContext 1 slow");
     for (const Words& words : {Words{"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--pes",
@@ -131,7 +131,7 @@ TEST_CASE("with -q nothing is drawn on a terminal", "[cli][verbosity]") {
         CHECK(told_on_terminal(words, slow) == "");
 }
 
-TEST_CASE("a check that takes long is named on a terminal, and nowhere else", "[cli][verify]") {
+TEST_CASE("a check that takes long is named on a terminal, and nowhere else", "[cli][verify][slow]") {
     const Words one_check = {"verify", "--only", "machine bus"};
     const Surroundings slow = failing_device("clFinish 1 slow");
     CHECK_THAT(

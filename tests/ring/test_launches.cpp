@@ -37,9 +37,10 @@ RingSettings random_settings(SplitMix& random, const AccelKind accel) {
     c.offset = random_below(random, c.width);
     c.bounces = accel == AccelKind::kNone ? 5 : 8;
     c.keep_costs = true;
-    c.lanes = random_below(random, 2) ? 4 : 16;  // few builds
-    c.group = random_below(random, 2) ? 1 : 3;
-    c.format = random_below(random, 2) ? "fp32" : "spa22";
+    const bool wide = random_below(random, 2), grouped = random_below(random, 2), fp32 = random_below(random, 2);
+    c.lanes = wide ? 16 : 4;  // few builds, and fewer where one waits
+    c.group = (thorough() ? grouped : !wide) ? 3 : 1;
+    c.format = (thorough() ? fp32 : wide) ? "fp32" : "spa22";
     if (random_below(random, 2)) c.antialias.method = AntialiasMethod::kSupersample;
     RingSettings settings = settings_of(c);
     settings.accel.kind = accel;
@@ -48,13 +49,13 @@ RingSettings random_settings(SplitMix& random, const AccelKind accel) {
 
 }  // namespace
 
-TEST_CASE("however little a launch may do, image, counts and costs are the same", "[ring]") {
+TEST_CASE("however little a launch may do, image, counts and costs are the same", "[ring][slow]") {
     const auto accel = GENERATE(AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh);
     const Scene scene = project_scene("centre");
     Session session(choose_device(""));
     const std::uint64_t seed = 20261122;
     SplitMix random(seed);
-    const unsigned cases = quick_cases(40, 200);
+    const unsigned cases = quick_cases(20, 200);
     unsigned more = 0;  // that took several launches
     for (unsigned i = 0; i < cases; ++i) {
         RingSettings settings = random_settings(random, accel);
@@ -116,7 +117,7 @@ bool is_seen(Session& session, const Scene& scene, const RingSettings& settings,
 }
 
 // What the state's faults would look like, and a device that ends loops in silence.
-TEST_CASE("faults in what launches keep are seen", "[ring]") {
+TEST_CASE("faults in what launches keep are seen", "[ring][faults]") {
     const SourcePatch faults[] = {
         {"ring/kept_trees.clh", "    keep_index(k, &t->level);\n", ""},
         {"ring/kept_trees.clh", "    keep_vec(k, &sum);\n", ""},
@@ -134,7 +135,7 @@ TEST_CASE("faults in what launches keep are seen", "[ring]") {
     RingSettings settings = settings_of(c);
     settings.work_per_launch = 300;
     const Answer right = answer_of(RingRenderer(session, scene, settings).render());
-    for (const SourcePatch& fault : faults) {
+    for (const SourcePatch& fault : quick_of(1, faults)) {
         CAPTURE(fault.file, fault.find);
         settings.kernels.sources.patches = {fault};
         CHECK(is_seen(session, scene, settings, right));

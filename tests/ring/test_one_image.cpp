@@ -37,7 +37,7 @@ Answer answer_of(const RingResult& result) { return {pixel_hash(result.image), r
 
 }  // namespace
 
-TEST_CASE("lanes, group size and the optimiser change no bit of the image and no count", "[ring]") {
+TEST_CASE("lanes, group size and the optimiser change no bit of the image and no count", "[ring][slow]") {
     const Scene scene = mixed_scene();
     const std::string format = GENERATE("fp32", "spa22");
     CAPTURE(format);

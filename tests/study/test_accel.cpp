@@ -177,7 +177,7 @@ TEST_CASE("accel's ratio to Embree is of the same rays alone", "[study]") {
     CHECK(page.table("accel").at(15, "memory").text() == "-");
 }
 
-TEST_CASE("each way counts the same rays and fewer tests than all objects", "[study]") {
+TEST_CASE("each way counts the same rays and fewer tests than all objects", "[study][slow]") {
     Session session(choose_device(""));
     AccelBench bench(session, kSmall, {});
     bench.measure({"balls", "balls 1", 0, [] { return generate_balls(1); }});

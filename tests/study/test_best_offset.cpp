@@ -43,7 +43,7 @@ std::size_t first_least(const std::vector<double>& list, std::size_t count) {
                                     list.begin());
 }
 
-TEST_CASE("what is recommended takes least of all offsets", "[study]") {
+TEST_CASE("what is recommended takes least of all offsets", "[study][slow]") {
     Session session(choose_device(""));
     Laboratory lab(session, kSize);
     const LabelledScene scene = embedded_scene("mirrors");

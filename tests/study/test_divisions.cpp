@@ -101,7 +101,7 @@ TEST_CASE("divisions' falls are figures at 32 over those at 1024", "[study]") {
     }
 }
 
-TEST_CASE("one voxel tests every object for every ray, and finer ones fewer", "[study]") {
+TEST_CASE("one voxel tests every object for every ray, and finer ones fewer", "[study][slow]") {
     Session session(choose_device(""));
     Laboratory lab(session, 17);
     const StudyPage page = study_divisions(lab, {{"even", generate_uniform(64, {4, 4, 4})}});

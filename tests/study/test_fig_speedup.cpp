@@ -156,7 +156,7 @@ TEST_CASE("fig9's means are those of the views, its sizes plain sums", "[study]"
     }
 }
 
-TEST_CASE("study fig9 takes the costs of the scene that is named", "[study]") {
+TEST_CASE("study fig9 takes the costs of the scene that is named", "[study][slow]") {
     Session session(choose_device(""));
     Laboratory lab(session, 32);
     const std::vector<LabelledScene> glass = {embedded_scene("glass")};

@@ -209,7 +209,7 @@ TEST_CASE("the paper's figures are those printed, and what follows from them", "
     CHECK(paper::kPixelMachineSpeedup == 60);
 }
 
-TEST_CASE("figures 7, 8, 12 and 13 are plain sums of the pixels' costs", "[study]") {
+TEST_CASE("figures 7, 8, 12 and 13 are plain sums of the pixels' costs", "[study][slow]") {
     const std::uint32_t size = GENERATE(17u, 40u);
     CAPTURE(size);
     Session session(choose_device(""));
@@ -238,7 +238,7 @@ TEST_CASE("a study takes the scene that is given, and calls only its own calibra
     CHECK(study_fig8(lab, {}).comparison("u(0)").remark.empty());  // centre.nff, but not of the size calibrated on
 }
 
-TEST_CASE("figures 7 and 8 at the paper's size are beside the paper's figures", "[study]") {
+TEST_CASE("figures 7 and 8 at the paper's size are beside the paper's figures", "[study][slow]") {
     Session session(choose_device(""));
     Laboratory lab(session, 0);
     const StudyPage page = study_fig8(lab, {});

@@ -52,7 +52,7 @@ TEST_CASE("fp32's figures are those of the renderer and of the reference's own c
     CHECK(row.ratio_to_fp32 == 1);
 }
 
-TEST_CASE("fp32 is never further from the reference than the SPA's format", "[study]") {
+TEST_CASE("fp32 is never further from the reference than the SPA's format", "[study][slow]") {
     const FormatsStudy study = small_study(embedded_study_scenes(), {"spa22"}, 32);
     REQUIRE(study.scenes.size() == 5);
     for (const SceneRows& scene : study.scenes) {

@@ -21,7 +21,7 @@ EventCounts on_one_node(Session& session, const Scene& scene, const Divisions& d
     return TorusRenderer(session, scene, settings).render().events;
 }
 
-TEST_CASE("a PE's grid and a node of the torus count the same rays, walks and steps", "[study]") {
+TEST_CASE("a PE's grid and a node of the torus count the same rays, walks and steps", "[study][slow]") {
     constexpr unsigned kSeed = 54;
     std::mt19937 random(kSeed);
     Session session(choose_device(""));

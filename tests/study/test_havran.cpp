@@ -73,7 +73,7 @@ TEST_CASE("balls is thin along z, lattice a cube", "[study]") {
     CHECK(lattice_high - lattice_low == Approx(1 + 1.0 / 24));
 }
 
-TEST_CASE("havran's rays are SPD's in kind, and the same in both grids of a scene", "[study]") {
+TEST_CASE("havran's rays are SPD's in kind, and the same in both grids of a scene", "[study][slow]") {
     Session session(choose_device(""));
     Laboratory lab(session, 25);
     const StudyPage page = study_havran(lab, {});

@@ -107,7 +107,7 @@ TEST_CASE("the images' first is set beside the paper only where it is the paper'
     CHECK_FALSE(images_page(32, {&small}).comparisons[0].paper);
 }
 
-TEST_CASE("study images takes ten scenes at two sizes", "[study]") {
+TEST_CASE("study images takes ten scenes at two sizes", "[study][slow]") {
     Session session(choose_device(""));
     Laboratory lab(session, 16);
     const StudyPage page = study_images(lab, {});

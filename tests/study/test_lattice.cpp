@@ -190,7 +190,7 @@ TEST_CASE("whether 0..n is enough is judged with intervals", "[study]") {
     CHECK(verdict({image, even_costs(16)}) == kCannotTell);
 }
 
-TEST_CASE("study lattice takes five scenes of the paper's kind", "[study]") {
+TEST_CASE("study lattice takes five scenes of the paper's kind", "[study][slow]") {
     Session session(choose_device(""));
     Laboratory lab(session, 32);
     const StudyPage page = study_lattice(lab, {});

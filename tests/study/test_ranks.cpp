@@ -161,7 +161,7 @@ TEST_CASE("processors' time is read from a line of the system, and nothing else"
     CHECK_FALSE(processor_time("", 10));
 }
 
-TEST_CASE("the study of ranks on small pictures: its shape, and what holds of any network", "[study]") {
+TEST_CASE("the study of ranks on small pictures: its shape, and what holds of any network", "[study][slow]") {
     const Mpirun mpirun(nullptr, RAYA_PROGRAM);
     if (const std::string lack = mpirun.lack(); !lack.empty()) {
         WARN(lack);

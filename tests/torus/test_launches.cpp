@@ -83,12 +83,12 @@ NodeMemories two_nodes(const raya_torus& torus, std::uint32_t spheres) {
 }  // namespace
 
 TEST_CASE("launches of little work, and links by a kernel, make the image and the counts of one launch a step",
-          "[torus]") {
+          "[torus][slow]") {
     const std::uint64_t seed = 20261;
     SplitMix random(seed);
     Session session(choose_device(""));
     std::uint64_t once = 0, bounded = 0;
-    for (unsigned i = 0; i < quick_cases(40, 300); ++i) {
+    for (unsigned i = 0; i < quick_cases(24, 120); ++i) {
         const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
         const TorusCase c = random_case(random, scene);
         TorusSettings settings = settings_of(c);
@@ -110,7 +110,7 @@ TEST_CASE("launches of little work, and links by a kernel, make the image and th
 }
 
 // Up to what a GPU's nodes have by default, and the most there is.
-TEST_CASE("work-groups of many work-items make the same image", "[torus]") {
+TEST_CASE("work-groups of many work-items make the same image", "[torus][slow]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
     TorusCase c{.width = 12, .height = 10, .nodes = {2, 2, 1}, .lanes = 1, .group = 1, .bounces = 3};

@@ -23,8 +23,10 @@ inline const SourcePatch kBarrierFault{
     "checks/machine.cl", "words - 1 - w] + 1;\n        barrier(CLK_LOCAL_MEM_FENCE);", "words - 1 - w] + 1;"};
 /// The filter takes the right border for the middle.
 inline const SourcePatch kBorderFault{"ring/filter.cl", "raya_has_neighbour(m, pixel, RAYA_RIGHT)", "1"};
-/// The exchange of the torus loses the last words of every box.
-inline const SourcePatch kExchangeFault{"torus/exchange.cl", "i < units; i +=", "i + 1 < units; i +="};
+/// The exchange of the torus turns a bit round in a colour or a limit. Words that it lost would be what the memory held
+/// before, a ray that never ends for one.
+inline const SourcePatch kExchangeFault{"torus/exchange.cl", "to[i] = from[i];",
+                                        "to[i] = from[i] ^ (uint8)(0, 0, 0, 0, 0, 0, 1 << 21, 0);"};
 /// A launch that goes on takes what the one before has brought home for gone.
 inline const SourcePatch kAgainFault{"torus/accept.cl", "gone = !again && (root", "gone = (root"};
 

@@ -11,7 +11,7 @@
 namespace raya {
 
 // Those that raya verify --quick makes are not made here once more: tools.verify compares them.
-TEST_CASE("pictures that are not in verify --quick are what the default device makes of them", "[verify]") {
+TEST_CASE("pictures that are not in verify --quick are what the default device makes of them", "[verify][slow]") {
     const std::vector<std::string> quick = check_names(choose_device(""), {.only = "image "});
     std::size_t made = 0;
     for (const Picture& picture : pictures()) {
