@@ -49,13 +49,16 @@ def unpack(wheel, folder):
 
 
 def cpu_that_llvm_14_lacks(cpuinfo):
-    """A name that LLVM 14 has for what this CPU can do, where it has none for the CPU itself: AMD's after family 25 (Zen 4), of which it says
-    "generic", a name that its own compiler then refuses. None: it knows the CPU."""
+    """A name that LLVM 14 has for what this CPU can do, where it has none for the CPU itself. None: it knows the CPU.
+
+    Of AMD's after family 25 it says "generic", a name that its own compiler then refuses; Zen 4 it takes for Zen 3, family 25 too, which has
+    no AVX-512, and ends on vectors of 16 floats ("Cannot emit physreg copy instruction")."""
     def value(key):
         return (re.search(rf"^{key}\s*: (.*)$", cpuinfo, re.MULTILINE) or ["", ""])[1]
-    if value("vendor_id") != "AuthenticAMD" or int(value("cpu family") or 0) <= 25:
+    family, wide = int(value("cpu family") or 0), "avx512vl" in value("flags").split()
+    if value("vendor_id") != "AuthenticAMD" or family < 25 or (family == 25 and not wide):
         return None
-    return "skylake-avx512" if "avx512vl" in value("flags").split() else "haswell"
+    return "skylake-avx512" if wide else "haswell"
 
 
 def name_cpu(library, cpu):

@@ -89,7 +89,8 @@ def check_naming_the_cpu(scratch):
     lacks = portability_setup.cpu_that_llvm_14_lacks
     expect(lacks(ZEN5) == "skylake-avx512", "AMD's family 26")
     expect(lacks(ZEN5.replace("avx512vl", "")) == "haswell", "AMD's family 26 without AVX-512")
-    expect(lacks(ZEN5.replace("26", "25")) is None, "a CPU that LLVM 14 knows")
+    expect(lacks(ZEN5.replace("26", "25")) == "skylake-avx512", "AMD's family 25 with AVX-512, Zen 4")
+    expect(lacks(ZEN5.replace("26", "25").replace("avx512vl", "")) is None, "AMD's family 25 without AVX-512, Zen 3, which LLVM 14 knows")
     expect(lacks(ZEN5.replace("AuthenticAMD", "GenuineIntel")) is None and lacks("") is None, "other makers")
     library = scratch / "libpocl.so"
     library.write_bytes(DRIVER)
