@@ -77,7 +77,7 @@ void run_as_trial(const RenderOptions& render, const TuneCommand& tune) {
     if (!render.scene.empty()) given = read_scene(render.scene, render.strict).scene;
     const Scene* const scene = given ? &*given : nullptr;
     run_trial(tune.lines, render.device, TrialOrder::of(tune.trial), scene, size_of(render, scene),
-              render.pes.value_or(Picture{}.pes), {.folder = render.kernel_dir});
+              render.pes.value_or(WorkloadPicture{}.pes), {.folder = render.kernel_dir});
 }
 
 TuneSink sink_for(const Workload& workload, const Space& space) {

@@ -48,7 +48,7 @@ Json scene_json(const SceneRows& scene) {
     return {{"scene", scene.label}, {"objects", scene.objects}, {"formats", each(scene.rows, row_json)}};
 }
 
-std::string ratio_range(const Range& range) {
+std::string ratio_range(const FigureRange& range) {
     const std::string from = fmt::format("{:.2f}", range.lowest), to = fmt::format("{:.2f}", range.highest);
     return from == to ? from : from + " to " + to;
 }
@@ -108,7 +108,7 @@ std::string finding_of_spa(const FormatsStudy& study) {
     const auto spa = std::ranges::find(all, parse_format("spa22"), &FormatOverview::format);
     if (spa == all.end()) return {};
     const FormatOverview& fp32 = all.front();
-    const auto text = [](double factor, const Range& range, int digits) {
+    const auto text = [](double factor, const FigureRange& range, int digits) {
         return fmt::format("{:.{}f} to {:.{}f}", factor * range.lowest, digits, factor * range.highest, digits);
     };
     return fmt::format(
@@ -141,7 +141,7 @@ std::string finding_of_change(const FormatsStudy& study, const char* from, const
 
 // Of one figure in the rows of a format.
 template <class Rows, class Figure>
-Range range_of(const Rows& rows, Figure figure) {
+FigureRange range_of(const Rows& rows, Figure figure) {
     const auto all = each(rows, figure);
     return {std::ranges::min(all), std::ranges::max(all)};
 }

@@ -8,18 +8,18 @@
 
 namespace raya {
 
-struct Range {
+struct FigureRange {
     double lowest = 0, highest = 0;
 };
 
 /// One format over all scenes.
 struct FormatOverview {
     NumberFormat format;
-    Range psnr_db;
+    FigureRange psnr_db;
     std::string worst_scene;  // label of the one with the lowest PSNR, of equal ones the first
     double largest = 0;       // error of any channel
-    Range share_over;         // of pixels, 0..1
-    Range ratio;              // measured, to fp32
+    FigureRange share_over;   // of pixels, 0..1
+    FigureRange ratio;        // measured, to fp32
 };
 
 /// One entry for each format, in the study's order; none without scenes.

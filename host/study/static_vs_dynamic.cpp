@@ -26,7 +26,7 @@ std::size_t best_of(const SceneOutcomes& scene, StrategyKind kind, std::size_t n
     return best;
 }
 
-const Outcome& best_outcome(const SceneOutcomes& scene, StrategyKind kind, std::size_t n) {
+const StrategyOutcome& best_outcome(const SceneOutcomes& scene, StrategyKind kind, std::size_t n) {
     return scene.outcomes[best_of(scene, kind, n)][n];
 }
 
@@ -78,7 +78,7 @@ std::string hybrid_finding(const SceneOutcomes& scene) {
         paid, free);
 }
 
-std::string claim_finding(const Verdict& v, std::uint32_t first_pes) {
+std::string claim_finding(const StaticVerdict& v, std::uint32_t first_pes) {
     const char* verdict = v.static_inadequate == v.cases ? "holds"
                           : v.static_inadequate == 0     ? "does not hold"
                                                          : "holds in part";
@@ -94,9 +94,10 @@ std::string queue_of(const SceneOutcomes& scene, std::uint64_t overhead) {
     std::vector<std::string> words;
     for (std::size_t s = 0; s < scene.strategies.size(); ++s) {
         if (!scene.strategies[s].pays()) continue;
-        const auto late = std::ranges::find_if(scene.outcomes[s],
-                                               [&](const Outcome& o) { return o.requests * overhead > o.makespan; }) -
-                          scene.outcomes[s].begin();
+        const auto late =
+            std::ranges::find_if(scene.outcomes[s],
+                                 [&](const StrategyOutcome& o) { return o.requests * overhead > o.makespan; }) -
+            scene.outcomes[s].begin();
         const auto n = static_cast<std::size_t>(late);
         words.push_back(scene.strategies[s].name + " " + from_words(n < scene.pes.size() ? scene.pes[n] : 0));
     }
@@ -134,12 +135,12 @@ std::uint32_t first_below(const SceneOutcomes& scene, std::size_t strategy, doub
     return 0;
 }
 
-Verdict verdict_of(const std::vector<SceneOutcomes>& scenes) {
-    Verdict v;
+StaticVerdict verdict_of(const std::vector<SceneOutcomes>& scenes) {
+    StaticVerdict v;
     for (const SceneOutcomes& scene : scenes)
         for (std::size_t n = 0; n < scene.pes.size(); ++n) {
-            const Outcome &fixed = best_outcome(scene, StrategyKind::kStatic, n),
-                          &hybrid = best_outcome(scene, StrategyKind::kHybrid, n);
+            const StrategyOutcome &fixed = best_outcome(scene, StrategyKind::kStatic, n),
+                                  &hybrid = best_outcome(scene, StrategyKind::kHybrid, n);
             v.cases += 1;
             v.static_inadequate += fixed.over_bound > kNear;
             v.hybrid_optimal += hybrid.over_bound <= kNear;

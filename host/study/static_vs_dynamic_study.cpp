@@ -20,7 +20,8 @@ struct Line {
 };
 
 Line line_of(const SceneOutcomes& scene, std::size_t s) {
-    return {scene.strategies[s].name, each(scene.outcomes[s], [](const Outcome& o) { return 100 * o.efficiency; })};
+    return {scene.strategies[s].name,
+            each(scene.outcomes[s], [](const StrategyOutcome& o) { return 100 * o.efficiency; })};
 }
 
 Line bound_of(const SceneOutcomes& scene) {
@@ -45,7 +46,7 @@ struct Case {
     const std::string& label() const { return scene->label; }
     const std::string& name() const { return scene->strategies[strategy].name; }
     std::uint32_t pes() const { return scene->pes[number]; }
-    const Outcome& outcome() const { return scene->outcomes[strategy][number]; }
+    const StrategyOutcome& outcome() const { return scene->outcomes[strategy][number]; }
     Cell below(double limit) const {
         const std::uint32_t first = first_below(*scene, strategy, limit);
         return first > 0 ? Cell(first) : Cell("never");
@@ -99,7 +100,7 @@ StudyPlot efficiency_plot(const SceneOutcomes& scene, std::size_t number, bool f
 struct AtFactor {
     double factor;
     std::uint64_t overhead;
-    Verdict verdict;
+    StaticVerdict verdict;
 };
 
 StudyTable table_of_factors(const std::vector<AtFactor>& factors) {
@@ -114,22 +115,24 @@ StudyTable table_of_factors(const std::vector<AtFactor>& factors) {
 }
 
 std::vector<Claim> claims_of(const std::vector<AtFactor>& factors) {
-    const auto in = [&](std::size_t Verdict::*count) {
+    const auto in = [&](std::size_t StaticVerdict::*count) {
         return joined(factors, ", ", [&](const AtFactor& row) {
             return fmt::format("{} of {} by the factor {:.2f}", row.verdict.*count, row.verdict.cases, row.factor);
         });
     };
-    const auto verdict = [&](std::size_t Verdict::*count) {
+    const auto verdict = [&](std::size_t StaticVerdict::*count) {
         return verdict_of(
             std::ranges::all_of(factors, [&](const AtFactor& row) { return row.verdict.*count == row.verdict.cases; }),
             std::ranges::all_of(factors, [&](const AtFactor& row) { return row.verdict.*count == 0; }));
     };
     return {{paper::kDynamic, "conclusions", "Static strategies are inadequate on 128 computers or more.",
-             verdict(&Verdict::static_inadequate),
-             fmt::format("No static one ends within 10 % of the lower bound in {}.", in(&Verdict::static_inadequate))},
+             verdict(&StaticVerdict::static_inadequate),
+             fmt::format("No static one ends within 10 % of the lower bound in {}.",
+                         in(&StaticVerdict::static_inadequate))},
             {paper::kDynamic, "conclusions", "Static plus dynamic distribution is nearly optimal.",
-             verdict(&Verdict::hybrid_optimal),
-             fmt::format("A hybrid, requests paid for, ends within 10 % of it in {}.", in(&Verdict::hybrid_optimal))}};
+             verdict(&StaticVerdict::hybrid_optimal),
+             fmt::format("A hybrid, requests paid for, ends within 10 % of it in {}.",
+                         in(&StaticVerdict::hybrid_optimal))}};
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ std::vector<Strategy> strategies(std::uint32_t size, std::uint32_t pes, std::uin
     return all;
 }
 
-Outcome run_strategy(const CostImage& image, const Strategy& strategy) {
+StrategyOutcome run_strategy(const CostImage& image, const Strategy& strategy) {
     const std::uint32_t pes = strategy.mapping.pes;
-    Outcome outcome;
+    StrategyOutcome outcome;
     if (strategy.kind == StrategyKind::kStatic) {
         outcome.makespan = static_load(image, strategy.mapping).max;
         outcome.single_columns = owns_single_columns(strategy.mapping);

@@ -27,7 +27,7 @@ struct Strategy {
 /// divisor with it.
 std::vector<Strategy> strategies(std::uint32_t size, std::uint32_t pes, std::uint64_t overhead);
 
-struct Outcome {
+struct StrategyOutcome {
     std::uint64_t makespan = 0;  // cycles
     double efficiency = 0;       // pure work / (P makespan)
     double over_bound = 1;       // makespan / lower_bound(): 1 is optimal
@@ -35,7 +35,7 @@ struct Outcome {
     bool single_columns = false;  // of a static one: each PE's pixels lie in one column
 };
 /// `image`: of the size that the strategy was made for.
-Outcome run_strategy(const CostImage& image, const Strategy& strategy);
+StrategyOutcome run_strategy(const CostImage& image, const Strategy& strategy);
 
 /// Budget cycles of a PE, each `factor` times the machine's cycle (spa_clock.hpp), from a request until its answer is
 /// there: a word (its number) to the root and two (first pixel, how many) back at the links' rate, each way with the

@@ -35,7 +35,7 @@ std::vector<std::vector<double>> samples_of(const std::vector<TrialRender>& rend
     return all;
 }
 
-void run(int lines, const std::string& device, const TrialOrder& order, const Picture& picture,
+void run(int lines, const std::string& device, const TrialOrder& order, const WorkloadPicture& picture,
          const KernelSources& sources) {
     Session session(choose_device(device));
     KernelChoice kernels;

@@ -38,7 +38,7 @@ const Way& way_named(const std::string& name) {
 
 constexpr std::uint32_t kBounces = 8;
 
-RingSettings ring_settings(const Workload& workload, const Picture& picture, const KernelChoice& kernels) {
+RingSettings ring_settings(const Workload& workload, const WorkloadPicture& picture, const KernelChoice& kernels) {
     RingSettings s;
     s.machine = machine_named("grande");
     const std::uint32_t pes = std::min(picture.pes, picture.size.width * picture.size.height);
@@ -50,7 +50,7 @@ RingSettings ring_settings(const Workload& workload, const Picture& picture, con
     return s;
 }
 
-TorusSettings torus_settings(const Workload& workload, const Picture& picture, const KernelChoice& kernels) {
+TorusSettings torus_settings(const Workload& workload, const WorkloadPicture& picture, const KernelChoice& kernels) {
     TorusSettings s = usual_torus(picture.size);
     s.bounces = kBounces;
     s.format = workload.format;
@@ -87,7 +87,7 @@ std::vector<Workload> usual_workloads() {
             {"torus", parse_format("fp32")}};
 }
 
-Picture picture_of(const Workload& workload, const Scene* given, const ImageSize& size, std::uint32_t pes) {
+WorkloadPicture picture_of(const Workload& workload, const Scene* given, const ImageSize& size, std::uint32_t pes) {
     const Way& way = way_named(workload.way);
     const auto own_scene = [&] {
         constexpr const char* kSpheres = "scenes/spheres.nff";
@@ -98,7 +98,7 @@ Picture picture_of(const Workload& workload, const Scene* given, const ImageSize
     return {given ? *given : own_scene(), size.width ? size : ImageSize{way.side, way.side}, pes};
 }
 
-TrialRender prepare_render(Session& session, const Workload& workload, const Picture& picture,
+TrialRender prepare_render(Session& session, const Workload& workload, const WorkloadPicture& picture,
                            const KernelChoice& kernels, const std::function<void()>& built) {
     if (workload.way == "torus")
         return render_of(

@@ -27,12 +27,12 @@ std::vector<Workload> usual_workloads();
 /// What a workload renders: `given`, where a user brings a scene, else 30 spheres and a plane for ways that test all
 /// objects, and SPD's balls of 7,381 spheres for those that do not. No side: 512 pixels, with an accelerator and on the
 /// torus 256.
-struct Picture {
+struct WorkloadPicture {
     Scene scene;
     ImageSize size{};
     std::uint32_t pes = 256;  // of the ring
 };
-Picture picture_of(const Workload& workload, const Scene* given, const ImageSize& size, std::uint32_t pes);
+WorkloadPicture picture_of(const Workload& workload, const Scene* given, const ImageSize& size, std::uint32_t pes);
 
 /// A renderer that has rendered once, so that its kernels are built.
 struct TrialRender {
@@ -42,7 +42,7 @@ struct TrialRender {
 };
 
 /// Calls `built` before the first image. DeviceError where kernels are not built, or rendering fails.
-TrialRender prepare_render(Session& session, const Workload& workload, const Picture& picture,
+TrialRender prepare_render(Session& session, const Workload& workload, const WorkloadPicture& picture,
                            const KernelChoice& kernels, const std::function<void()>& built);
 
 }  // namespace raya

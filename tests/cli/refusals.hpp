@@ -14,7 +14,7 @@ using Words = std::vector<std::string>;
 /// Runs raya, which must leave `outputs` as empty as it is.
 inline void check_refused(const ScratchFolder& outputs, const Words& arguments, int code, const Words& message,
                           const Surroundings& around = {}) {
-    const Outcome run = run_raya(arguments, around);
+    const RunOutcome run = run_raya(arguments, around);
     INFO(run.told());
     CHECK(run.code == code);
     CHECK(run.out.empty());

@@ -39,13 +39,13 @@ class RenderFiles {
 
     const std::string& image() const { return image_; }
     const std::string& cost() const { return cost_; }
-    const Outcome& run() const { return run_; }
+    const RunOutcome& run() const { return run_; }
     Document report() const { return Document::parse(file_contents(report_)); }
 
   private:
     ScratchFolder folder_;
     std::string image_, cost_, report_;
-    Outcome run_;
+    RunOutcome run_;
 };
 
 }  // namespace raya

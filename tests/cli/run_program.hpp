@@ -29,7 +29,7 @@
 
 namespace raya {
 
-struct Outcome {
+struct RunOutcome {
     std::string command;  // for messages of a failed test
     int code = 0;         // exit code; 128 + signal if one ended the program
     std::string out, err;
@@ -132,9 +132,9 @@ inline void send_signal(pid_t child, const Surroundings& around) {
 
 /// Runs raya with these arguments and no input, without a shell, and waits for its end. std::runtime_error if it cannot
 /// be started.
-inline Outcome run_raya(std::vector<std::string> arguments, const Surroundings& around = {}) {
+inline RunOutcome run_raya(std::vector<std::string> arguments, const Surroundings& around = {}) {
     namespace detail = run_program_detail;
-    Outcome outcome;
+    RunOutcome outcome;
     outcome.command = "raya";
     for (const std::string& argument : arguments) outcome.command += " '" + argument + "'";
     arguments.insert(arguments.begin(), "raya");

@@ -41,7 +41,7 @@ TEST_CASE("what a bench would pass over is refused", "[cli]") {
 TEST_CASE("bench --report writes its rows, --compare holds a later run against them", "[cli]") {
     const ScratchFolder folder;
     const std::string base = folder / "base.json";
-    const Outcome first = run_raya(small_bench({"--report", base}));
+    const RunOutcome first = run_raya(small_bench({"--report", base}));
     INFO(first.told());
     REQUIRE(first.code == 0);
     const Document report = json_of(base);
@@ -62,26 +62,26 @@ TEST_CASE("bench --report writes its rows, --compare holds a later run against t
           Approx(row["rays"].get<double>() / row["ms"]["best"].get<double>() * 1e-3));
     CHECK_THAT(row["build_options"].get<std::string>(), Catch::Contains("-DRAYA_LANES=4"));
     // Against a row a thousand times slower nothing can be slower.
-    const Outcome second = run_raya(small_bench({"--compare", changed(folder, "slow.json", 1e-3)}));
+    const RunOutcome second = run_raya(small_bench({"--compare", changed(folder, "slow.json", 1e-3)}));
     INFO(second.told());
     CHECK(second.code == 0);
     CHECK(second.err.empty());
     CHECK_THAT(second.out,
                Catch::Contains("faster") && Catch::Contains("1 rows compared, none slower by more than 10 %"));
     // Against a row a thousand times faster it must be.
-    const Outcome third = run_raya(small_bench(
+    const RunOutcome third = run_raya(small_bench(
         {"--compare", changed(folder, "fast.json", 1e3), "--tolerance", "50", "--report", folder / "now.json"}));
     INFO(third.told());
     CHECK(third.code == 4);
     CHECK_THAT(third.out, Catch::Contains("-99.") && Catch::Contains("SLOWER"));
     CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 rows 1 slower by more than 50 %, 0 with another image"));
     CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written all the same
-    const Outcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
+    const RunOutcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
     INFO(fourth.told());
     CHECK(fourth.code == 4);
     CHECK_THAT(fourth.out, Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
     // A run of other rows has nothing to be compared.
-    const Outcome fifth = run_raya(small_bench({"--compare", base, "--bounces", "1"}));
+    const RunOutcome fifth = run_raya(small_bench({"--compare", base, "--bounces", "1"}));
     INFO(fifth.told());
     CHECK(fifth.code == 2);
     CHECK_THAT(fifth.err, Catch::Contains("no row of this run is in it") && Catch::Contains("8 bounces, accel none") &&
@@ -106,7 +106,7 @@ TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cl
 TEST_CASE("bench --ways times whole renders with and without a grid and on the torus, the same image", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string base = folder / "ways.json";
-    const Outcome run =
+    const RunOutcome run =
         run_raya({"bench", RAYA_SOURCE_DIR "/scenes/mirrors.nff", "--ways", "grid,torus,none", "--machine", "grande",
                   "--size", "40x30", "--format", "fp32", "--lanes", "4", "--samples", "1", "--report", base});
     INFO(run.told());
@@ -129,7 +129,7 @@ TEST_CASE("bench --ways times whole renders with and without a grid and on the t
 
 TEST_CASE("bench --denormals times every row twice, and makes the same image where nothing is denormal", "[cli]") {
     const ScratchFolder outputs;
-    const Outcome run =
+    const RunOutcome run =
         run_raya({"bench", scene_file("planes"), "--ways", "none", "--size", "16", "--pes", "16", "--lanes", "4",
                   "--format", "fp32", "--samples", "1", "--denormals", "--report", outputs / "x.json"});
     INFO(run.told());

@@ -47,8 +47,8 @@ TEST_CASE("bench --ranks renders one image on one rank and two, and tells of bot
     const ScratchFolder folder;
     for (const std::string machine : {"grande", "torus"}) {
         const std::string file = folder / (machine + ".json");
-        const Outcome run = run_raya({"bench", "--ranks", "1,2", scene_file("spheres"), "--machine", machine, "--size",
-                                      "48x32", "--format", "fp32", "--samples", "1", "--report", file});
+        const RunOutcome run = run_raya({"bench", "--ranks", "1,2", scene_file("spheres"), "--machine", machine,
+                                         "--size", "48x32", "--format", "fp32", "--samples", "1", "--report", file});
         INFO(run.told());
         REQUIRE(run.code == 0);
         const Document report = Document::parse(file_contents(file));

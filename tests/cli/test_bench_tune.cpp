@@ -45,9 +45,9 @@ TEST_CASE("candidates that fail, crash, hang or make another image are dropped, 
     const ScratchFolder kernels, cache, outputs;
     const std::string copy = write_kernels(kernels / "kernels", {kFaults}), report = outputs / "t4.json";
     const Surroundings around = tuned_in(cache);
-    const Outcome run = run_raya({"bench", "--tune", "--ways", "none", "--format", "fp32", "--size", "16", "--pes", "1",
-                                  "--candidate-seconds", "12", "--kernel-dir", copy, "--report", report},
-                                 around);
+    const RunOutcome run = run_raya({"bench", "--tune", "--ways", "none", "--format", "fp32", "--size", "16", "--pes",
+                                     "1", "--candidate-seconds", "12", "--kernel-dir", copy, "--report", report},
+                                    around);
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK_FALSE(contains(run.err, "raya: "));  // compilers speak there
@@ -77,7 +77,7 @@ TEST_CASE("candidates that fail, crash, hang or make another image are dropped, 
             "render", scene_file("spheres"), "-o",     outputs / "x.pfm", "--size", "16",       "--pes",
             "4",      "--machine",           "grande", "--accel",         "none",   "--report", outputs / "r.json"};
         words.insert(words.end(), more.begin(), more.end());
-        const Outcome render = run_raya(words, around);
+        const RunOutcome render = run_raya(words, around);
         INFO(render.told());
         REQUIRE(render.code == 0);
         CHECK(contains(render.out, "\ntuned   " + file) == more.empty());
@@ -94,9 +94,10 @@ TEST_CASE("candidates that fail, crash, hang or make another image are dropped, 
     std::ofstream(file) << "{";
     const Document damaged = rendered({"--no-tuned"});
     CHECK(damaged["warnings"].empty());
-    const Outcome warned = run_raya({"render", scene_file("spheres"), "-o", outputs / "x.pfm", "--size", "16", "--pes",
-                                     "4", "--machine", "grande", "--accel", "none", "--report", outputs / "r.json"},
-                                    around);
+    const RunOutcome warned =
+        run_raya({"render", scene_file("spheres"), "-o", outputs / "x.pfm", "--size", "16", "--pes", "4", "--machine",
+                  "grande", "--accel", "none", "--report", outputs / "r.json"},
+                 around);
     CHECK(warned.code == 0);
     CHECK_THAT(warned.err, Catch::Contains("raya: warning: " + file + ": damaged"));
     CHECK(Document::parse(file_contents(outputs / "r.json"))["warnings"].size() == 1);
@@ -106,7 +107,7 @@ TEST_CASE("a device whose defaults fail is not tuned", "[cli]") {
     const ScratchFolder kernels, cache, outputs;
     const std::string copy =
         write_kernels(kernels / "kernels", {{"shading/tree.clh", "#ifndef RAYA_TREE_CLH\n", "#error \"none\"\n"}});
-    const Outcome run = run_raya(
+    const RunOutcome run = run_raya(
         {"bench", "--tune", "--ways", "none", "--size", "8", "--pes", "4", "--kernel-dir", copy}, tuned_in(cache));
     INFO(run.told());
     CHECK(run.code == 3);

@@ -13,8 +13,8 @@ namespace raya {
 namespace {
 using Words = std::vector<std::string>;
 
-Outcome succeed(const Words& arguments) {
-    Outcome run = run_raya(arguments);
+RunOutcome succeed(const Words& arguments) {
+    RunOutcome run = run_raya(arguments);
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
@@ -139,7 +139,7 @@ TEST_CASE("the summary names a mapping without slots, and a grid brings its own 
 }
 
 TEST_CASE("--quiet prints nothing", "[cli]") {
-    const Outcome run = RenderFiles("centre", {"--quiet"}).run();
+    const RunOutcome run = RenderFiles("centre", {"--quiet"}).run();
     CHECK(run.out.empty());
     CHECK(run.err.empty());
 }

@@ -41,7 +41,7 @@ TEST_CASE("a device that ends a loop early is found by its pixels, and nothing i
 
 TEST_CASE("RAYA_BUILD_OPTIONS goes to every build, into the report and into the message of a failed one", "[cli]") {
     const ScratchFolder outputs;
-    const Outcome run =
+    const RunOutcome run =
         run_raya(render_into(outputs, scene_file("planes"), {"--size", "16", "--quiet", "--lanes", "4"}),
                  {.variables = {{"RAYA_BUILD_OPTIONS", "-cl-opt-disable -DNO_MATTER=1"}}});
     INFO(run.told());
@@ -121,7 +121,7 @@ TEST_CASE("where PoCL's cache may not be written, the build's failure says so; w
         "render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
     check_refused(outputs, words, 3, {"clBuildProgram failed", "The log gives no reason", "POCL_CACHE_DIR"},
                   {.variables = {{"POCL_CACHE_DIR", home.path()}}, .as_nobody = true});
-    const Outcome run = run_raya(
+    const RunOutcome run = run_raya(
         words,
         {.variables = {{"POCL_CACHE_DIR", ""}, {"XDG_CACHE_HOME", ""}, {"HOME", home.path()}}, .as_nobody = true});
     INFO(run.told());

@@ -19,7 +19,7 @@ std::vector<std::string> small(std::vector<std::string> more) {
 TEST_CASE("explore writes a page and says what it opens with", "[cli]") {
     const ScratchFolder folder;
     const std::string page = folder / "page.html";
-    const Outcome run = run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block"}));
+    const RunOutcome run = run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block"}));
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
@@ -29,7 +29,7 @@ TEST_CASE("explore writes a page and says what it opens with", "[cli]") {
     CHECK_THAT(html, Contains("<span>--mapping</span> <span>cyclic:3</span> <span>--pes</span> <span>20</span>"));
     CHECK_THAT(html, Contains("raya explore: " + scene_file("spheres")));
     CHECK(folder.entries() == 1);
-    const Outcome again =
+    const RunOutcome again =
         run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));
     CHECK(again.code == 0);
     CHECK(again.out.empty());
@@ -54,7 +54,7 @@ TEST_CASE("what explore refuses names the reason and leaves nothing behind", "[c
           Row{{"-o", page, "--pes", "0"}, "--pes 0: must be 1..384"},
           Row{{"-o", page, "--mapping", "tiles:7x5"}, "tiles must divide the image"},
           Row{{"-o", page, "--antialias", "filter"}, "no option --antialias"}, Row{{}, "--output is required"}}) {
-        const Outcome run = run_raya(small(row.options));
+        const RunOutcome run = run_raya(small(row.options));
         INFO(run.told());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Contains(row.reason));
@@ -64,7 +64,7 @@ TEST_CASE("what explore refuses names the reason and leaves nothing behind", "[c
 
 TEST_CASE("explore refuses more pixels than a page can hold before it renders them", "[cli]") {
     const ScratchFolder folder;
-    const Outcome run = run_raya({"explore", scene_file("spheres"), "-o", folder / "page.html", "--size", "1500"});
+    const RunOutcome run = run_raya({"explore", scene_file("spheres"), "-o", folder / "page.html", "--size", "1500"});
     INFO(run.told());
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Contains("--size 1500x1500: too many pixels for a page") && Contains("remedy"));
@@ -75,7 +75,7 @@ TEST_CASE("explore on a device that there is not leaves an older page as it was"
     const ScratchFolder folder;
     const std::string page = folder / "page.html";
     std::ofstream(page) << "older";
-    const Outcome run = run_raya(small({"-o", page, "--device", "no such device"}));
+    const RunOutcome run = run_raya(small({"-o", page, "--device", "no such device"}));
     INFO(run.told());
     CHECK(run.code != 0);
     CHECK(file_contents(page) == "older");

@@ -62,7 +62,7 @@ TEST_CASE("a device that lacks memory for the peak loses the roofline, not the r
     int lost_renders = 0, lost_peaks = 0;
     for (int n = 1; n < 60; n += thorough() ? 1 : 4) {
         const ScratchFolder outputs;
-        const Outcome run =
+        const RunOutcome run =
             run_raya(small_render(outputs, {"--profile"}), failing_device(fmt::format("clCreateBuffer {} -4", n)));
         CAPTURE(n, run.told());
         lost_renders += run.code == 3;
@@ -92,7 +92,7 @@ TEST_CASE("a host that runs out of memory ends with the remedy", "[cli]") {
 
 TEST_CASE("without a fault the same runs end well: the tests above can fail", "[cli]") {
     const ScratchFolder outputs;
-    const Outcome run = run_raya(small_render(outputs), failing_device("clCreateBuffer 1000000 -4"));
+    const RunOutcome run = run_raya(small_render(outputs), failing_device("clCreateBuffer 1000000 -4"));
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK(outputs.entries() == 3);
@@ -101,7 +101,7 @@ TEST_CASE("without a fault the same runs end well: the tests above can fail", "[
 TEST_CASE("a device that is there no more is named, with those that there are", "[cli]") {
     const ScratchFolder outputs;
     const Words with = small_render(outputs, {"--device", "basic"});
-    const Outcome there = run_raya(with, {.variables = {{"POCL_DEVICES", "basic"}}});
+    const RunOutcome there = run_raya(with, {.variables = {{"POCL_DEVICES", "basic"}}});
     INFO(there.told());
     REQUIRE(there.code == 0);
     for (const auto& entry : std::filesystem::directory_iterator(outputs.path())) std::filesystem::remove(entry);
@@ -139,7 +139,7 @@ TEST_CASE("a full disk ends with the reason and leaves nothing", "[cli]") {
                       full_disk(outputs, std::to_string(room)));
     }
     // With room enough the same run ends well: the disk is no more than full.
-    const Outcome run = run_raya(large_render(outputs / "x.pfm"), full_disk(outputs, std::to_string(whole)));
+    const RunOutcome run = run_raya(large_render(outputs / "x.pfm"), full_disk(outputs, std::to_string(whole)));
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK(std::filesystem::file_size(outputs / "x.pfm") == whole);
@@ -148,7 +148,7 @@ TEST_CASE("a full disk ends with the reason and leaves nothing", "[cli]") {
 TEST_CASE("a full disk leaves an older file as it was", "[cli]") {
     const ScratchFolder outputs;
     std::ofstream(outputs / "x.pfm") << "older";
-    const Outcome run = run_raya(large_render(outputs / "x.pfm"), full_disk(outputs, "1000"));
+    const RunOutcome run = run_raya(large_render(outputs / "x.pfm"), full_disk(outputs, "1000"));
     INFO(run.told());
     CHECK(run.code == 2);
     CHECK(outputs.entries() == 1);

@@ -99,7 +99,7 @@ class Sequence {
 
     /// Runs it, and tells how many frames were rendered.
     int rendered(const Words& more) const {
-        const Outcome run = run_raya(words(more));
+        const RunOutcome run = run_raya(words(more));
         INFO(run.told());
         REQUIRE(run.code == 0);
         CHECK(run.err.empty());
@@ -194,7 +194,7 @@ TEST_CASE("a sequence that was stopped goes on", "[cli][frames]") {
     int left = 60;
     for (int ms = 60; left == 60 && ms <= 5000; ms += ms / 2) {
         stopped.emplace();
-        const Outcome run = run_raya(stopped->words(frames), {.signal = SIGINT, .signal_after_ms = ms});
+        const RunOutcome run = run_raya(stopped->words(frames), {.signal = SIGINT, .signal_after_ms = ms});
         INFO(run.told());
         REQUIRE(run.code == 128 + SIGINT);
         left = stopped->rendered(frames);
@@ -242,7 +242,7 @@ TEST_CASE("what cannot be a sequence is refused before anything is rendered", "[
                   {"-o -", "many files"});
     const ScratchFolder other;
     write_whole_file(other / "t-frames.json", "{\"kind\": \"mine\"}");
-    const Outcome run =
+    const RunOutcome run =
         run_raya({"render", scene_file("centre"), "-o", other / "t.ppm", "--frames", "1:4", "--turn", "90"});
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Catch::Contains("no record of frames"));

@@ -13,7 +13,7 @@ namespace raya {
 namespace {
 
 std::string help_of(Words words, const std::string& columns = "") {
-    const Outcome run = run_raya(std::move(words), {.variables = {{"COLUMNS", columns}}});
+    const RunOutcome run = run_raya(std::move(words), {.variables = {{"COLUMNS", columns}}});
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());

@@ -28,7 +28,7 @@ TEST_CASE("the same render writes the same bytes", "[cli]") {
 TEST_CASE("drivers are loaded before what writes pictures", "[cli]") {
     const ScratchFolder scratch;
     const Surroundings told{.variables = {{"LD_DEBUG", "libs"}}};
-    const Outcome run =
+    const RunOutcome run =
         run_raya({"render", scene_file("planes"), "-o", scratch / "x.png", "--size", "4", "--pes", "1"}, told);
     CHECK(run.code == 0);
     const std::size_t driver = run.err.find("/libpocl"), pictures = run.err.find("raya_pictures.so");
@@ -85,7 +85,7 @@ TEST_CASE("a scene too large for the default machine's format is rendered in oth
             Words words = {"render", file, "-o", folder / "x.pfm", "--lanes", "4", "--report", folder / "x.json"};
             words.insert(words.end(), options.begin(), options.end());
             if (machine == std::string("spa")) words.insert(words.end(), {"--pes", "24"});
-            const Outcome run = run_raya(words);
+            const RunOutcome run = run_raya(words);
             INFO(run.told());
             REQUIRE(run.code == 0);
             const Document report = Document::parse(file_contents(folder / "x.json"));
@@ -111,7 +111,7 @@ TEST_CASE("what a format cannot hold is warned of, and refused where nothing is 
         return run_raya({"render", scene, "-o", folder / "x.pfm", "--lanes", "4", "--pes", "8", "--format", format,
                          "--report", folder / "x.json"});
     };
-    const Outcome warned = render("s 0 0 0 1000\ns 9 9 9 1e-5\n", "spa22");
+    const RunOutcome warned = render("s 0 0 0 1000\ns 9 9 9 1e-5\n", "spa22");
     INFO(warned.told());
     CHECK(warned.code == 0);
     CHECK_THAT(warned.err, Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are not seen") &&
@@ -119,7 +119,7 @@ TEST_CASE("what a format cannot hold is warned of, and refused where nothing is 
     const Document report = Document::parse(file_contents(folder / "x.json"));
     REQUIRE(report["warnings"].size() == 1);
     CHECK_THAT(warned.err, Catch::Contains(report["warnings"][0].get<std::string>()));
-    const Outcome refused = render("s 9 9 9 1e-5\n", "spa22");
+    const RunOutcome refused = render("s 9 9 9 1e-5\n", "spa22");
     CHECK(refused.code == 2);
     CHECK_THAT(refused.err, Catch::Contains("from 1e-05 to 1e+06") && Catch::Contains("remedy: --format fp32"));
     CHECK(render("s 9 9 9 1e-5\n", "fp32").code == 0);
@@ -133,7 +133,7 @@ TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --
                      "p 3\n0 0 0\n0 0 0\n1 1 1\ns 0 0 0 1\n");
     const Words words = {"render", scene,   "-o", folder / "x.pfm", "--lanes",
                          "4",      "--pes", "8",  "--report",       folder / "x.json"};
-    const Outcome run = run_raya(words);
+    const RunOutcome run = run_raya(words);
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK(run.err == "raya: warning: " + scene + ":8: entity 'la' of another dialect, skipped (2 in all)\n" +
@@ -149,7 +149,7 @@ TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --
     for (const Words& other :
          {Words{"bench", scene, "--strict"}, Words{"study", "fig7", scene, "--strict", "-o", folder / "s"},
           Words{"study", "formats", scene, "--strict", "-o", folder / "s"}}) {
-        const Outcome refused = run_raya(other);
+        const RunOutcome refused = run_raya(other);
         INFO(refused.told());
         CHECK(refused.code == 2);
         CHECK_THAT(refused.err, Catch::Contains("t.nff:8: unknown entity 'la'"));
@@ -164,14 +164,14 @@ TEST_CASE("two names of one file are refused, however they are written", "[cli]"
     for (const auto& [one, other] :
          {std::pair<std::string, std::string>{"x.pfm", "./x.pfm"}, {"x.pfm", "d/../x.pfm"}, {"link.pfm", "x.pfm"}}) {
         CAPTURE(one, other);
-        const Outcome run = run_raya(
+        const RunOutcome run = run_raya(
             {"render", scene_file("planes"), "-o", folder / one, "--report", (folder.path() / other).string()});
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Catch::Contains("named twice"));
     }
     const std::string scene = folder / "scene.nff";
     std::filesystem::copy(scene_file("planes"), scene);
-    const Outcome run = run_raya({"render", scene, "-o", folder / "x.pfm", "--report", folder / "d/../scene.nff"});
+    const RunOutcome run = run_raya({"render", scene, "-o", folder / "x.pfm", "--report", folder / "d/../scene.nff"});
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Catch::Contains("named twice"));
     CHECK(file_contents(scene) == file_contents(scene_file("planes")));
@@ -182,7 +182,7 @@ TEST_CASE("a render replaces old files", "[cli]") {
     const ScratchFolder folder;
     const std::string image = folder / "x.pfm";
     for (const std::string size : {"9x7", "4x3"}) {
-        const Outcome run =
+        const RunOutcome run =
             run_raya({"render", scene_file("planes"), "-o", image, "--size", size, "--pes", "2", "--lanes", "4"});
         INFO(run.told());
         REQUIRE(run.code == 0);

@@ -15,7 +15,7 @@ const Surroundings kNoDevice{.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OC
 
 Document info_of(const std::string& scene, Words options = {}) {
     options.insert(options.begin(), {"info", scene, "--json"});
-    const Outcome run = run_raya(options, kNoDevice);
+    const RunOutcome run = run_raya(options, kNoDevice);
     INFO(run.told());
     REQUIRE(run.code == 0);
     return Document::parse(run.out);
@@ -43,7 +43,7 @@ struct Rendered {
         run = run_raya(options);
         if (run.code == 0) report = Document::parse(file_contents(folder / "x.json"));
     }
-    Outcome run;
+    RunOutcome run;
     Document report;
 };
 
@@ -164,7 +164,7 @@ TEST_CASE("info counts what the reader reads, and tells what was skipped", "[cli
     write_whole_file(file,
                      "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\nla 1 1 1\n"
                      "s 0 0 0 1\ns 9 9 9 1e-9\n");
-    const Outcome run = run_raya({"info", file, "--format", "spa22", "--from", "0,-1e6,0"}, kNoDevice);
+    const RunOutcome run = run_raya({"info", file, "--format", "spa22", "--from", "0,-1e6,0"}, kNoDevice);
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.err, Catch::Contains("warning: " + file + ":8: entity 'la'"));
@@ -186,7 +186,7 @@ TEST_CASE("a scene that a format cannot hold is told, with what a render would s
     write_whole_file(file, "v\nfrom 0 -1e6 0\nat 0 0 0\nup 0 0 1\nangle 1\nhither 1\nresolution 64 64\ns 9 9 9 1e-5\n");
     const Document info = info_of(file);
     for (const Document& fit : info["formats"]) CHECK(fit["fits"] == (fit["format"] == "fp32"));
-    const Outcome run = run_raya({"render", file, "-o", folder / "x.pfm"});
+    const RunOutcome run = run_raya({"render", file, "-o", folder / "x.pfm"});
     CHECK(run.code == 2);
     const std::string refusal = need_of(machine_of(info, "spa"), "none")["refusal"];
     CHECK_THAT(run.err, Catch::Contains(refusal));
@@ -205,7 +205,7 @@ TEST_CASE("info refuses what no machine can be", "[cli]") {
     check_refused(none, {"info", scene, "--from", "1,2"}, 2, {"--from 1,2"});
     check_refused(none, {"info", scene, "--device", "0"}, 2, {"no option --device"});
     check_refused(none, {"info", none / "no.nff"}, 2, {"no.nff: cannot read the scene"});
-    const Outcome run = run_raya({"info", scene, "--offset", "3"}, kNoDevice);
+    const RunOutcome run = run_raya({"info", scene, "--offset", "3"}, kNoDevice);
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("cap: --offset 3"));  // the others can
 }

@@ -30,7 +30,7 @@ TEST_CASE("an interrupted render goes on, with the same picture", "[cli][keep]")
         Surroundings around;
         around.signal = SIGINT;
         around.signal_after_ms = ms;
-        const Outcome run = run_raya(render_of(folder, keep), around);
+        const RunOutcome run = run_raya(render_of(folder, keep), around);
         INFO(run.told());
         REQUIRE((run.code == 0 || run.code == 128 + SIGINT));
         if (run.code == 0) {
@@ -42,7 +42,7 @@ TEST_CASE("an interrupted render goes on, with the same picture", "[cli][keep]")
     REQUIRE(interrupted);
     Words resume = keep;
     resume.emplace_back("--resume");
-    const Outcome run = run_raya(render_of(folder, resume));
+    const RunOutcome run = run_raya(render_of(folder, resume));
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK((file_contents(folder / "x.pfm") == picture));
@@ -72,10 +72,10 @@ TEST_CASE("a file that is there is neither written over nor taken for a state", 
     const std::string file = folder / "s.rst";
     write_whole_file(file, "hours of work");
     const auto run = [&](const Words& more) { return run_raya(render_of(folder, more)); };
-    const Outcome kept = run({"--keep", file});
+    const RunOutcome kept = run({"--keep", file});
     CHECK(kept.code == 2);
     CHECK_THAT(kept.err, Catch::Contains("give --resume"));
-    const Outcome resumed = run({"--keep", file, "--resume"});
+    const RunOutcome resumed = run({"--keep", file, "--resume"});
     CHECK(resumed.code == 2);
     CHECK_THAT(resumed.err, Catch::Contains("no state of a render"));
     CHECK(file_contents(file) == "hours of work");

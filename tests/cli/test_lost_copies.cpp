@@ -13,7 +13,7 @@ namespace raya {
 namespace {
 
 /// Beginnings of the names of checks that ended so: lines that open with "FAIL  LAYER ".
-Words checks_with(const Outcome& run, const std::string& beginning) {
+Words checks_with(const RunOutcome& run, const std::string& beginning) {
     Words names;
     std::istringstream lines(run.out);
     for (std::string line; std::getline(lines, line);)
@@ -25,7 +25,7 @@ long count_of(const Words& names, const std::string& part) {
     return std::count_if(names.begin(), names.end(), [&](const std::string& name) { return contains(name, part); });
 }
 
-Outcome verify_losing(const std::string& fault, const std::string& only) {
+RunOutcome verify_losing(const std::string& fault, const std::string& only) {
     return run_raya({"verify", "--only", only}, failing_device(fault));
 }
 
@@ -37,7 +37,7 @@ TEST_CASE("copies that are lost are seen by the checks of what copies", "[cli][v
     for (const Row& row :
          {Row{"clEnqueueCopyBuffer 2 lost", 3, 0, 0, 0}, Row{"clEnqueueCopyBuffer 40 astray", 1, 0, 0, 0},
           Row{"clEnqueueCopyBufferRect 1 lost", 3, 1, 1, 4}}) {
-        const Outcome run = verify_losing(row.fault, "machine");
+        const RunOutcome run = verify_losing(row.fault, "machine");
         INFO(run.told());
         CHECK(run.code == 4);
         const Words wrong = checks_with(run, "FAIL  machine   ");
@@ -54,7 +54,7 @@ TEST_CASE("copies that are lost are seen in the images of both machines", "[cli]
     using Run = std::pair<const char*, const char*>;
     for (const auto& [only, fault] : {Run{"glass fp32 filter", "clEnqueueCopyBuffer 20 lost"},
                                       Run{"polygons fp32: torus3d 2x2x2", "clEnqueueCopyBufferRect 20 lost"}}) {
-        const Outcome lost = verify_losing(fault, only);
+        const RunOutcome lost = verify_losing(fault, only);
         INFO(lost.told());
         CHECK(lost.code == 4);
         CHECK(checks_with(lost, "FAIL  image     ").size() == 1);
@@ -64,7 +64,7 @@ TEST_CASE("copies that are lost are seen in the images of both machines", "[cli]
 TEST_CASE("a transfer over the bus that goes to the wrong PE is seen in the image", "[cli][verify]") {
     const ScratchFolder folder;
     const auto hash_of = [&](const std::string& way, const std::string& fault) {
-        const Outcome run = run_raya(
+        const RunOutcome run = run_raya(
             {"render", scene_file("planes"), "-o", folder / "i.pfm", "--report", folder / "r.json", "--size", "20x12",
              "--pes", "20", "--offset", "3", "--lanes", "4", "--antialias", "filter", "--exchange", way},
             failing_device(fault));
@@ -81,7 +81,7 @@ TEST_CASE("a transfer over the bus that goes to the wrong PE is seen in the imag
 }
 
 TEST_CASE("a device that loses nothing is right: the tests above can pass", "[cli][verify]") {
-    const Outcome run = verify_losing("clEnqueueCopyBuffer 1000000 lost", "exchange of");
+    const RunOutcome run = verify_losing("clEnqueueCopyBuffer 1000000 lost", "exchange of");
     INFO(run.told());
     CHECK(run.code == 0);
 }

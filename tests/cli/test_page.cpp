@@ -32,7 +32,7 @@ Words small_render(const ScratchFolder& folder, const Words& more = {}) {
 }
 
 // No device is there, so that nothing can run again.
-Outcome page_of_file(const std::string& report, const std::string& page, const Words& more = {}) {
+RunOutcome page_of_file(const std::string& report, const std::string& page, const Words& more = {}) {
     return run_raya(joined({"page", report, "-o", page}, more),
                     {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}});
 }
@@ -40,10 +40,10 @@ Outcome page_of_file(const std::string& report, const std::string& page, const W
 // Runs the command with both files, and makes the page once more of the report alone.
 std::string check_page(const ScratchFolder& folder, const Words& command, int code = 0) {
     const std::string report = folder / "r.json", page = folder / "r.html", again = folder / "again.html";
-    const Outcome run = run_raya(joined(command, {"--report", report, "--page", page}));
+    const RunOutcome run = run_raya(joined(command, {"--report", report, "--page", page}));
     INFO(run.told());
     REQUIRE(run.code == code);
-    const Outcome made = page_of_file(report, again);
+    const RunOutcome made = page_of_file(report, again);
     INFO(made.told());
     REQUIRE(made.code == 0);
     CHECK_THAT(made.out, StartsWith("page    " + again));
@@ -72,12 +72,12 @@ TEST_CASE("the page of a render is what raya page makes of its report", "[cli][p
 
 TEST_CASE("a page is written without a report, and a report has what a page needs", "[cli][page]") {
     const ScratchFolder folder;
-    const Outcome run = run_raya(small_render(folder, {"--page", folder / "r.html"}));
+    const RunOutcome run = run_raya(small_render(folder, {"--page", folder / "r.html"}));
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK(folder.entries() == 2);
     REQUIRE(run_raya(small_render(folder, {"--report", folder / "r.json"})).code == 0);
-    const Outcome made = page_of_file(folder / "r.json", folder / "again.html", {"--quiet"});
+    const RunOutcome made = page_of_file(folder / "r.json", folder / "again.html", {"--quiet"});
     CHECK(made.code == 0);
     CHECK(made.out.empty());
     CHECK_THAT(file_contents(folder / "again.html"), Contains("peak was not measured"));
@@ -144,16 +144,16 @@ TEST_CASE("what raya page refuses names the reason and leaves nothing behind", "
         {changed("map.json", [](Document& r) { r["machine"]["mapping"] = "spiral"; }), page, "spiral"},
         {changed("load.json", [](Document& r) { r.erase("load"); }), page, "load"}};
     for (const Row& row : rows) {
-        const Outcome run = page_of_file(row.report, row.page);
+        const RunOutcome run = page_of_file(row.report, row.page);
         INFO(run.told());
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Contains(row.reason));
         CHECK(folder.entries() == 0);
     }
-    const Outcome known = page_of_file(changed("more.json", [](Document& r) { r["later"] = {{"a", 1}}; }), page);
+    const RunOutcome known = page_of_file(changed("more.json", [](Document& r) { r["later"] = {{"a", 1}}; }), page);
     INFO(known.told());
     CHECK(known.code == 0);
-    const Outcome twice = run_raya(small_render(folder, {"--report", page, "--page", page}));
+    const RunOutcome twice = run_raya(small_render(folder, {"--report", page, "--page", page}));
     CHECK(twice.code == 2);
     CHECK_THAT(twice.err, Contains("named twice"));
 }
@@ -176,8 +176,7 @@ TEST_CASE("reports with something missing or of another kind are refused, never 
     const auto cases = static_cast<int>(quick_cases(300, 5000));
     for (int i = 0; i < cases; ++i) {
         Document::json_pointer place(paths[random() % paths.size()]);
-        for (auto up = random() % 3; up > 0 && !place.parent_pointer().empty(); --up)
-            place = place.parent_pointer();
+        for (auto up = random() % 3; up > 0 && !place.parent_pointer().empty(); --up) place = place.parent_pointer();
         Document report = good;
         report[place] = odd[random() % odd.size()];
         CAPTURE(i, place.to_string(), report[place].dump());

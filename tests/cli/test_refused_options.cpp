@@ -149,7 +149,7 @@ TEST_CASE("where OpenImageIO does not load, PNG and EXR are refused before anyth
         check_refused(outputs, {"render", scene, "-o", outputs / image}, 2,
                       {outputs / image, "libOpenImageIO", "remedy: install OpenImageIO ", instead}, around);
     for (const char* image : {"x.pfm", "x.ppm"}) {
-        const Outcome run =
+        const RunOutcome run =
             run_raya({"render", scene, "-o", outputs / image, "--size", "4", "--pes", "4", "--lanes", "4"}, around);
         INFO(run.told());
         CHECK(run.code == 0);

@@ -17,7 +17,7 @@ using Names = std::set<std::string>;
 /// File names of all libraries that raya and the processes that it starts load, as LD_DEBUG of ld.so(8) tells them.
 Names libraries_of(const std::vector<std::string>& arguments) {
     const ScratchFolder told;
-    const Outcome run =
+    const RunOutcome run =
         run_raya(arguments, {.variables = {{"LD_DEBUG", "files"}, {"LD_DEBUG_OUTPUT", told / "process"}}});
     INFO(run.told());
     REQUIRE(run.code == 0);

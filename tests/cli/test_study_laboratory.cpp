@@ -31,7 +31,7 @@ const Surroundings kNoPython{.variables = {{"RAYA_PYTHON", "/nonexistent"}}};
 
 TEST_CASE("a study without matplotlib writes all but the plots, and says so", "[cli]") {
     const ScratchFolder outputs;
-    const Outcome run = run_raya(study("fig8", outputs, {"--size", "32"}), kNoPython);
+    const RunOutcome run = run_raya(study("fig8", outputs, {"--size", "32"}), kNoPython);
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
@@ -78,7 +78,7 @@ TEST_CASE("without SimGrid its study says what to install, and the others go on 
 
 TEST_CASE("a study with matplotlib has its plots, else the reason why not", "[cli]") {
     const ScratchFolder outputs;
-    const Outcome run = run_raya(study("fig7", outputs, {"--size", "20"}));
+    const RunOutcome run = run_raya(study("fig7", outputs, {"--size", "20"}));
     INFO(run.told());
     REQUIRE(run.code == 0);
     Files expected = {"fig7.csv", "fig7.json", "fig7.md", "index.html"};
@@ -89,7 +89,7 @@ TEST_CASE("a study with matplotlib has its plots, else the reason why not", "[cl
 TEST_CASE("a study takes a scene of one's own", "[cli]") {
     const ScratchFolder outputs;
     const std::string name = GENERATE("fig7", "fig8", "fig12", "fig13");
-    const Outcome run = run_raya(study(name, outputs, {scene_file("glass"), "--size", "20"}), kNoPython);
+    const RunOutcome run = run_raya(study(name, outputs, {scene_file("glass"), "--size", "20"}), kNoPython);
     INFO(run.told());
     REQUIRE(run.code == 0);
     const auto json = Document::parse(file_contents(outputs / "made/x" / (name + ".json")));

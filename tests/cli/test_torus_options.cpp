@@ -120,7 +120,7 @@ TEST_CASE("bench takes no torus", "[cli]") {
 }
 
 TEST_CASE("the help of render gives the torus's options with units and defaults", "[cli]") {
-    const Outcome run = run_raya({"render", "--help"});
+    const RunOutcome run = run_raya({"render", "--help"});
     REQUIRE(run.code == 0);
     const std::string help = squeezed(run.out);
     for (const char* text :

@@ -13,7 +13,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 struct TracedRun {
-    Outcome run;
+    RunOutcome run;
     Document trace, report;
 };
 
@@ -147,7 +147,7 @@ TEST_CASE("a trace that cannot be is refused before anything is rendered", "[cli
     const auto refused = [&](const Words& options) {
         Words words = {"render", scene_file("centre"), "-o", folder / "x.pfm", "--size", "8", "--pes", "8"};
         words.insert(words.end(), options.begin(), options.end());
-        const Outcome run = run_raya(words);
+        const RunOutcome run = run_raya(words);
         INFO(run.told());
         CHECK(run.code == 2);
         CHECK(folder.entries() == 0);

@@ -23,8 +23,8 @@ Words small_render(const ScratchFolder& folder, const Words& options) {
     return words;
 }
 
-Outcome succeed(const Words& words) {
-    Outcome run = run_raya(words);
+RunOutcome succeed(const Words& words) {
+    RunOutcome run = run_raya(words);
     INFO(run.told());
     REQUIRE(run.code == 0);
     return run;
@@ -46,10 +46,10 @@ std::string scene_to_be_warned_of(const ScratchFolder& folder) {
 
 TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const Outcome usual = succeed(small_render(folder, {}));
+    const RunOutcome usual = succeed(small_render(folder, {}));
     CHECK(usual.err.empty());
     const std::string picture = file_contents(folder / "x.ppm");
-    const Outcome run = succeed(small_render(folder, {"-v"}));
+    const RunOutcome run = succeed(small_render(folder, {"-v"}));
     INFO(run.err);
     CHECK(without_times(run.out) == without_times(usual.out));
     CHECK(file_contents(folder / "x.ppm") == picture);
@@ -65,7 +65,7 @@ TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout",
 TEST_CASE("-vv tells builds and the device's times too", "[cli][verbosity]") {
     const ScratchFolder folder;
     for (const Words& twice : {Words{"-vv"}, Words{"--verbose", "-v"}}) {
-        const Outcome run = succeed(small_render(folder, twice));
+        const RunOutcome run = succeed(small_render(folder, twice));
         INFO(run.err);
         for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
         CHECK_THAT(run.err, Catch::Contains("raya: build ring/trace.cl: options -cl-std=CL1.2 "));
@@ -80,15 +80,15 @@ TEST_CASE("-q leaves warnings, -qq leaves them out, and neither an error", "[cli
     words[1] = scene;
     CHECK_THAT(succeed(words).err, Catch::Contains("raya: warning: "));
     words.emplace_back("-q");
-    const Outcome quiet = succeed(words);
+    const RunOutcome quiet = succeed(words);
     CHECK(quiet.out.empty());
     CHECK_THAT(quiet.err, Catch::Contains("raya: warning: "));
     words.emplace_back("-q");
-    const Outcome silent = succeed(words);
+    const RunOutcome silent = succeed(words);
     CHECK(silent.out.empty());
     CHECK(silent.err.empty());
     words.emplace_back("--strict");
-    const Outcome refused = run_raya(words);
+    const RunOutcome refused = run_raya(words);
     CHECK(refused.code == 2);
     CHECK_THAT(refused.err, Catch::Contains("flat.nff"));
 }
@@ -102,24 +102,24 @@ TEST_CASE("-q with -v is refused, in either order", "[cli][verbosity]") {
 
 TEST_CASE("before the command and behind it they say the same", "[cli][verbosity]") {
     for (const Words& words : {Words{"devices", "-v"}, Words{"-v", "devices"}}) {
-        const Outcome run = succeed(words);
+        const RunOutcome run = succeed(words);
         CHECK_THAT(run.out, Catch::Contains("platform"));
     }
     const ScratchFolder folder;
     Words words = small_render(folder, {});
     words.insert(words.begin(), "-q");
-    const Outcome run = succeed(words);
+    const RunOutcome run = succeed(words);
     CHECK(run.out.empty());
     CHECK(run.err.empty());
 }
 
 TEST_CASE("verify -q prints what failed and the last line", "[cli][verify][verbosity]") {
     const Words machine = {"verify", "--only", "machine bus", "--lanes", "4", "-q"};
-    const Outcome right = succeed(machine);
+    const RunOutcome right = succeed(machine);
     REQUIRE(lines_of(right.out).size() == 1);
     CHECK_THAT(right.out, Catch::Matches(".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s\n"));
     const ScratchFolder folder;
-    const Outcome wrong = run_raya(
+    const RunOutcome wrong = run_raya(
         {"verify", "--only", "machine", "-q", "--kernel-dir", write_kernels(folder / "kernels", {kMappingFault})});
     INFO(wrong.told());
     CHECK(wrong.code == 4);
@@ -135,7 +135,7 @@ TEST_CASE("studies, pages and frames print nothing with -q", "[cli][verbosity]")
                 folder / "formats", "-q"},
           Words{"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
           small_render(folder, {"--frames", "1:2", "--turn", "90", "-q"})}) {
-        const Outcome run = succeed(words);
+        const RunOutcome run = succeed(words);
         INFO(run.told());
         CHECK(run.out.empty());
         CHECK(run.err.empty());

@@ -10,7 +10,7 @@
 namespace raya {
 
 TEST_CASE("verify prints a line for each check and closes with the counts", "[cli][verify]") {
-    const Outcome run = run_raya({"verify", "--only", "machine"});
+    const RunOutcome run = run_raya({"verify", "--only", "machine"});
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("PASS  machine   ring: rotations of 7 PEs"));
@@ -20,7 +20,7 @@ TEST_CASE("verify prints a line for each check and closes with the counts", "[cl
 TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json", kernels = write_kernels(scratch / "kernels", {kMappingFault});
-    const Outcome run = run_raya({"verify", "--only", "machine", "--kernel-dir", kernels, "--report", file});
+    const RunOutcome run = run_raya({"verify", "--only", "machine", "--kernel-dir", kernels, "--report", file});
     INFO(run.told());
     CHECK(run.code == 4);
     CHECK_THAT(run.out, Catch::Contains("FAIL  machine   mapping: blocks") && Catch::Contains("expected") &&
@@ -45,7 +45,7 @@ TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli
 TEST_CASE("a brief verify takes few rays, and those of reduced formats without the grid", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json";
-    const Outcome run = run_raya({"verify", "--brief", "--only", "geometry", "--report", file});
+    const RunOutcome run = run_raya({"verify", "--brief", "--only", "geometry", "--report", file});
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("grid, fp32") && Catch::Contains("  384 rays, ") &&
@@ -63,27 +63,27 @@ TEST_CASE("verify of nothing says what there is", "[cli][verify]") {
 
 TEST_CASE("verify of what the device cannot do is skipped, and no success", "[cli][verify]") {
     const Surroundings small_groups = failing_device("clGetDeviceInfo 4100 8");
-    const Outcome some = run_raya({"verify", "--only", "machine local memory"}, small_groups);
+    const RunOutcome some = run_raya({"verify", "--only", "machine local memory"}, small_groups);
     INFO(some.told());
     CHECK(some.code == 0);
     CHECK_THAT(some.out, Catch::Contains("SKIP  machine   local memory and barriers, 32 work-items") &&
                              Catch::Contains("32 work-items wanted, the device has 8 in a group") &&
                              Catch::Contains(": 1 checks passed, 0 failed, 1 skipped"));
-    const Outcome none = run_raya({"verify", "--only", "32 work-items"}, small_groups);
+    const RunOutcome none = run_raya({"verify", "--only", "32 work-items"}, small_groups);
     INFO(none.told());
     CHECK(none.code == 4);
     CHECK_THAT(none.out, Catch::Contains(": 0 checks passed, 0 failed, 1 skipped"));
 }
 
 TEST_CASE("verify takes every usable device in turn", "[cli][verify]") {
-    const Outcome run = run_raya({"verify", "--device", "all", "--only", "rotations"});
+    const RunOutcome run = run_raya({"verify", "--device", "all", "--only", "rotations"});
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("3 checks passed"));
 }
 
 TEST_CASE("verify with one width of lanes says so in its checks", "[cli][verify]") {
-    const Outcome run = run_raya({"verify", "--lanes", "4", "--only", "number fp32"});
+    const RunOutcome run = run_raya({"verify", "--lanes", "4", "--only", "number fp32"});
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("PASS  number    fp32, 4 lanes") && Catch::Contains("1 checks passed"));

@@ -22,7 +22,7 @@ TEST_CASE("a driver that crashes fails the check that ran, and the others go on"
                            Row{"clEnqueueCopyBufferRect 1 exit", "ended by exit code 1"}}) {
         const ScratchFolder scratch;
         const std::string file = scratch / "report.json";
-        const Outcome run = run_raya({"verify", "--only", "machine", "--report", file}, failing_device(row.fault));
+        const RunOutcome run = run_raya({"verify", "--only", "machine", "--report", file}, failing_device(row.fault));
         INFO(run.told());
         CHECK(run.code == 4);
         for (const char* part : {"PASS  machine   ways through the torus", "FAIL  machine   copies of blocks",
@@ -62,7 +62,7 @@ TEST_CASE("Ctrl-C ends verify and the process of its checks at once", "[cli][ver
     const Words command = {"verify", "--full", "--kernel-dir", copy, "--report", outputs / "report.json"};
     for (const auto& [signal, after_ms] : {std::pair(SIGINT, 0), std::pair(SIGINT, 1500), std::pair(SIGTERM, 1500)}) {
         CAPTURE(signal, after_ms);
-        const Outcome run = run_raya(command, {.signal = signal, .signal_after_ms = after_ms});
+        const RunOutcome run = run_raya(command, {.signal = signal, .signal_after_ms = after_ms});
         INFO(run.told());
         CHECK(run.code == 128 + signal);
         CHECK_THAT(run.err, Catch::Contains("raya: interrupted\n"));
@@ -137,7 +137,7 @@ TEST_CASE("a check that takes long is named on a terminal, and nowhere else", "[
     CHECK_THAT(
         told_on_terminal(one_check, slow),
         Catch::Contains("\r\033[Krunning machine bus: broadcast and gather ... 1 s") && Catch::EndsWith("\r\033[K"));
-    const Outcome run = run_raya(one_check, slow);
+    const RunOutcome run = run_raya(one_check, slow);
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK(run.err.empty());

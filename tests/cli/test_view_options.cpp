@@ -117,7 +117,7 @@ TEST_CASE("a picture by options is that of a scene which says the same, and its 
     const auto report_of = [&](const std::string& file, Words words) {
         words.insert(words.begin(), {"render", file, "-o", folder / "x.pfm", "--size", "16", "--lanes", "4", "--format",
                                      "fp32", "--report", folder / "x.json"});
-        const Outcome run = run_raya(words);
+        const RunOutcome run = run_raya(words);
         INFO(run.told());
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "x.json"));
@@ -156,7 +156,7 @@ TEST_CASE("bench measures what the options show, and --light leaves the scene to
         words.insert(words.begin(), "bench");
         words.insert(words.end(), {"--size", "16", "--samples", "1", "--lanes", "4", "--format", "fp32", "--report",
                                    folder / "b.json"});
-        const Outcome run = run_raya(words);
+        const RunOutcome run = run_raya(words);
         INFO(run.told());
         REQUIRE(run.code == 0);
         return Document::parse(file_contents(folder / "b.json"))["rows"][0]["hash"];

@@ -33,7 +33,7 @@ struct RanksFault {
     int after_ms = 700;
 };
 
-struct RanksOutcome : Outcome {
+struct RanksOutcome : RunOutcome {
     double seconds = 0;        // from the fault, or else from the start, to the end of the last process
     std::size_t left = 0;      // processes that did not end
     std::size_t messages = 0;  // lines of raya's own on stderr

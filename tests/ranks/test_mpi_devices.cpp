@@ -55,7 +55,7 @@ TEST_CASE("a torus's scene that no device here could hold is rendered on several
     // CL_DEVICE_MAX_MEM_ALLOC_SIZE: the words of all nodes take 1.4 MB.
     const Surroundings small{
         .variables = {{"LD_PRELOAD", RAYA_CL_FAULTS}, {"RAYA_FAULT", "clGetDeviceInfo 4112 1000000"}}};
-    const Outcome refused = run_raya(torus, small);
+    const RunOutcome refused = run_raya(torus, small);
     INFO(refused.told());
     CHECK(refused.code == 3);
     CHECK(contains(refused.err, "node memories"));

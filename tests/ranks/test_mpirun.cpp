@@ -29,7 +29,7 @@ Files files_in(const ScratchFolder& folder) {
 }
 
 void check_all_counts(const ScratchFolder& folder, const Words& render) {
-    const Outcome alone = run_raya(render);
+    const RunOutcome alone = run_raya(render);
     INFO(alone.told());
     REQUIRE(alone.code == 0);
     const Files one = files_in(folder);

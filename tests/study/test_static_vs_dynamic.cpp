@@ -31,7 +31,7 @@ SceneOutcomes by_hand(std::array<double, 2> fixed, std::array<double, 2> hybrid)
     scene.strategies.push_back({"hybrid:16, free requests", StrategyKind::kHybrid, {}, {16, 0, 0.5}});
     scene.strategies.push_back({"hybrid:16", StrategyKind::kHybrid, {}, {16, 5, 0.5}});
     const auto outcomes = [](std::array<double, 2> over) {
-        std::vector<Outcome> all;
+        std::vector<StrategyOutcome> all;
         for (const double o : over) all.push_back({static_cast<std::uint64_t>(1000 * o), 1 / o, o, 0, false});
         return all;
     };
@@ -85,7 +85,7 @@ TEST_CASE("outcomes keep the bounds, and static ones are plain sums", "[study]")
         static_cast<double>(std::accumulate(image.cycles.begin(), image.cycles.end(), std::uint64_t{0}));
     for (const Strategy& strategy : strategies(size, pes, random_below(random, 300))) {
         CAPTURE(strategy.name, size, pes);
-        const Outcome outcome = run_strategy(image, strategy);
+        const StrategyOutcome outcome = run_strategy(image, strategy);
         CHECK(outcome.makespan >= lower_bound(image, pes));
         CHECK(outcome.efficiency == Approx(total / (pes * double(outcome.makespan))).epsilon(1e-12));
         CHECK(outcome.over_bound == Approx(double(outcome.makespan) / double(lower_bound(image, pes))).epsilon(1e-12));
@@ -119,16 +119,16 @@ TEST_CASE("single columns are found where p meets the turns of the PEs that shar
 }
 
 TEST_CASE("the verdict counts what it says", "[study]") {
-    const Verdict holds_in_all = verdict_of({by_hand({1.5, 2}, {1.05, 1.1})});
+    const StaticVerdict holds_in_all = verdict_of({by_hand({1.5, 2}, {1.05, 1.1})});
     CHECK(holds_in_all.cases == 2);
     CHECK(holds_in_all.static_inadequate == 2);
     CHECK(holds_in_all.hybrid_optimal == 2);
     CHECK(holds_in_all.hybrid_beats == 2);
-    const Verdict in_none = verdict_of({by_hand({1.02, 1.1}, {1.3, 1.1})});
+    const StaticVerdict in_none = verdict_of({by_hand({1.02, 1.1}, {1.3, 1.1})});
     CHECK(in_none.static_inadequate == 0);
     CHECK(in_none.hybrid_optimal == 1);
     CHECK(in_none.hybrid_beats == 0);  // equal is not better
-    const Verdict both = verdict_of({by_hand({1.5, 2}, {1.05, 1.1}), by_hand({1.02, 1.2}, {1.3, 1.3})});
+    const StaticVerdict both = verdict_of({by_hand({1.5, 2}, {1.05, 1.1}), by_hand({1.02, 1.2}, {1.3, 1.3})});
     CHECK(both.cases == 4);
     CHECK(both.static_inadequate == 3);
 }
@@ -158,7 +158,7 @@ TEST_CASE("findings branch with the figures", "[study]") {
 TEST_CASE("an even image is no case for dynamic distribution", "[study]") {
     const SceneOutcomes scene = outcomes_of("even", even_image(32, 1000), {128, 256, 512}, 300);
     CHECK(scene.bound == std::vector<double>{1, 1, 1});
-    const Verdict verdict = verdict_of({scene});
+    const StaticVerdict verdict = verdict_of({scene});
     CHECK(verdict.cases == 3);
     CHECK(verdict.static_inadequate == 0);
     CHECK(verdict.hybrid_beats == 0);

@@ -49,8 +49,8 @@ TEST_CASE("the three files of a formats study are complete and agree", "[study]"
     const ScratchFolder folder;
     const std::filesystem::path out = folder / "made/for/it";
     const Words scenes = {scene_file("centre"), scene_file("spheres")};
-    const Outcome run = run_raya({"study", "formats", "-o", out, "--size", "16x12", "--samples", "1", "--lanes", "1",
-                                  "--format", "e6m13t,spa22,fp32,e6m15", scenes[0], scenes[1]});
+    const RunOutcome run = run_raya({"study", "formats", "-o", out, "--size", "16x12", "--samples", "1", "--lanes", "1",
+                                     "--format", "e6m13t,spa22,fp32,e6m15", scenes[0], scenes[1]});
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());

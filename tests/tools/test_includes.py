@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Holds every #include of the project to what CONTRIBUTING.md says ("The house"): a folder includes what its row names, and
 no other; headers do not go round in circles; what reports and models machines reaches no OpenCL; what is precompiled is
-included all the same by what uses it.
+included all the same by what uses it; a type's name stands in one header, or two files that include one of them each would
+link to one another's functions of it.
   test_includes.py [ROOT]"""
 import pathlib
 import re
@@ -140,6 +141,23 @@ def faults_of(graph, allowed):
     return found
 
 
+def types_of_headers():
+    """(header, type) of all types that headers define in namespace raya itself."""
+    found = []
+    for folder in ("host", "tests"):
+        for path in sorted((root / folder).rglob("*.hpp")):
+            text = path.read_text()
+            if re.search(r"^namespace raya \{", text, re.MULTILINE):
+                names = re.findall(r"^(?:struct|class|enum class|enum) (\w+)\b[^;\n]*\{", text, re.MULTILINE)
+                found += [(str(path.relative_to(root)), name) for name in names]
+    return found
+
+
+def named_twice(types):
+    first = {}
+    return [f"{header}: {name} is a type of {first[name]} too" for header, name in types if first.setdefault(name, header) != header]
+
+
 # Includes that must be found: up the table, between neighbours that do not know each other, in a circle, OpenCL in a report.
 PLANTED = [
     ("host/scene/scene.hpp", "host/ring/mapping.hpp", "may not know host/ring/"),
@@ -157,6 +175,10 @@ def main():
     faults.extend(missing(used, given, graph))
     if len(missing(used, {**given, "tests/cli/test_commands.cpp": set()}, graph)) == len(missing(used, given, graph)):
         faults.append("tests/cli/test_commands.cpp without its includes, and nobody says so")
+    types = types_of_headers()
+    faults.extend(named_twice(types))
+    if not named_twice([*types, ("host/image/pixels.hpp", types[0][1])]):
+        faults.append(f"two headers may define {types[0][1]}, and nobody says so")
     for name, target, fault in PLANTED:
         if name not in graph or target not in graph:
             faults.append(f"test_includes.py: {name} or {target} is gone; plant another fault")
@@ -164,7 +186,7 @@ def main():
             faults.append(f"{name} may include {target}, and nobody says '{fault}'")
     print("\n".join(faults))
     arrows = sum(len(targets) for targets in graph.values())
-    print(f"{len(graph)} files, {arrows} includes, {len(rows)} rows of folders: {len(faults)} faults; {len(PLANTED)} planted ones seen")
+    print(f"{len(graph)} files, {arrows} includes, {len(types)} types, {len(rows)} rows of folders: {len(faults)} faults; {len(PLANTED)} planted ones seen")
     return 1 if faults or len(graph) < 100 or len(rows) < 10 else 0
 
 
