@@ -88,7 +88,7 @@ TEST_CASE("launches of little work, and links by a kernel, make the image and th
     SplitMix random(seed);
     Session session(choose_device(""));
     std::uint64_t once = 0, bounded = 0;
-    for (unsigned i = 0; i < quick_cases(24, 120); ++i) {
+    for (unsigned i = 0; i < quick_cases(40, 300); ++i) {
         const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
         const TorusCase c = random_case(random, scene);
         TorusSettings settings = settings_of(c);

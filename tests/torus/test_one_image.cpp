@@ -79,13 +79,12 @@ TEST_CASE("ten scenes on some machines, with queues from short to long, are the 
     int scenes_done = 0;
     for (const Scene& scene : scenes) {
         ++scenes_done;
-        if (!thorough() && scenes_done % 4 != (format == "fp32" ? 0 : 2)) continue;
         TorusCase c{.width = 18, .height = 12, .lanes = 4, .group = 1, .format = format};
         const std::string expected = ring_image(scene, c);
         CHECK_THAT(expected, Catch::Contains("primary 216 "));
         for (const Row& row : rows) {
             if ((&row - rows + scenes_done) % 2 == (format == "spa22")) continue;  // half of them in each format
-            if (!thorough() && (&row - rows) / 2 != scenes_done / 2 % 4) continue;
+            if (!thorough() && (scenes_done % 2 == 1 || (&row - rows) / 2 % 4 != scenes_done % 4)) continue;
             c.nodes = row.nodes;
             c.voxels = row.voxels;
             c.links = row.links;
@@ -100,7 +99,7 @@ TEST_CASE("ten scenes on some machines, with queues from short to long, are the 
 
 TEST_CASE("random scenes on random machines are the ring's images", "[torus][slow]") {
     const std::uint64_t seed = 6021;
-    const std::string format = GENERATE(from_range(quick(3, {"fp32", "spa22", "e5m6", "e8m12t", "e5m10"})));
+    const std::string format = GENERATE("fp32", "spa22", "e8m12t", "e5m10", "e5m6");
     Session session(choose_device(""));
     SplitMix random(seed);
     const std::uint32_t scenes = std::max(3u, random_cases() / 4);

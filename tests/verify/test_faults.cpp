@@ -165,14 +165,14 @@ TEST_CASE("faults of links by a kernel and of launches that go on are seen on th
     }
 }
 
-TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify][faults]") {
+TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify]") {
     const VerifySettings settings{.sources = {"/no/such/folder"}, .only = "machine"};
     const auto checks = verify(choose_device(""), settings);
     CHECK(count_of(checks, Outcome::kFail) > 5);
     CHECK(count_of(checks, Outcome::kPass) > 5);  // transfers need no kernel
 }
 
-TEST_CASE("a patch that does not fit ends verify before any check", "[verify][faults]") {
+TEST_CASE("a patch that does not fit ends verify before any check", "[verify]") {
     CHECK_THROWS_AS(run({{"ring/trace.cl", "no such text", ""}}, "machine"), std::logic_error);
 }
 
