@@ -60,9 +60,11 @@ std::uint32_t default_lanes(const DeviceInfo& device) {
     return lanes;
 }
 
-std::uint32_t default_group_size(const DeviceInfo& device) {
-    constexpr std::size_t kGroup = 128;
-    return device.type == "cpu" ? 1 : static_cast<std::uint32_t>(std::min<std::size_t>(kGroup, device.max_group_size));
+std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
+    constexpr std::size_t kOfGpu = 128, kOfVector = 8;
+    const bool cpu = device.type == "cpu";
+    if (cpu && (torus || device.loop_turns == 0)) return 1;
+    return static_cast<std::uint32_t>(std::min(cpu ? kOfVector : kOfGpu, device.max_group_size));
 }
 
 bool filters_hold(const NumberFormat& format, double extent) {

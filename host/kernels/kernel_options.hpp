@@ -61,9 +61,11 @@ struct KernelChoice {
 /// itself and takes minutes and gigabytes to compile wider kernels.
 std::uint32_t default_lanes(const DeviceInfo& device);
 
-/// L: 1 on a CPU, where lanes do its work, 128 elsewhere: 256 PEs of four warps are about what 132 multiprocessors hold
-/// at the 150 registers a work-item that trace takes (docs/gpu_resources.md).
-std::uint32_t default_group_size(const DeviceInfo& device);
+/// L: 1 on a CPU, where lanes do its work; 8 on llvmpipe, whose vectors of 256 bits are a group's work-items; 128
+/// elsewhere: 256 PEs of four warps are about what 132 multiprocessors hold at the 150 registers a work-item that trace
+/// takes (docs/gpu_resources.md). A torus node on any CPU is one work-item, which keeps packets in order
+/// (docs/packets.md).
+std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
 
 /// Whether the bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh hold: a reduced format of 10
 /// fraction bits or more, and a scene whose extent (scene units) leaves room for squares. They change the time of a

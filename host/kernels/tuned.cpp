@@ -14,8 +14,8 @@ TunedSource& source_in_use() {
 
 }  // namespace
 
-TunedValues default_values(const DeviceInfo& device) {
-    return {.lanes = default_lanes(device), .group = default_group_size(device)};
+TunedValues default_values(const DeviceInfo& device, const TunedFor& what) {
+    return {.lanes = default_lanes(device), .group = default_group_size(device, what.torus)};
 }
 
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {
@@ -38,13 +38,13 @@ KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedF
     kernels.link_origin = links_named ? "options" : "";
     if (kernels.lanes == 0 && kernels.group_size == 0) {
         const auto tuned = source_in_use() ? source_in_use()(device, what) : std::nullopt;
-        kernels = with_values(kernels, tuned ? tuned->values : default_values(device));
+        kernels = with_values(kernels, tuned ? tuned->values : default_values(device, what));
         kernels.origin = tuned ? tuned->origin : "defaults";
         if (!links_named && kernels.link_move != LinkMove::kOfDevice) kernels.link_origin = kernels.origin;
         return kernels;
     }
     if (!kernels.lanes) kernels.lanes = default_lanes(device);
-    if (!kernels.group_size) kernels.group_size = default_group_size(device);
+    if (!kernels.group_size) kernels.group_size = default_group_size(device, what.torus);
     kernels.origin = "options";
     return kernels;
 }

@@ -42,7 +42,7 @@ inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>
      {"link_exchange", &TunedValues::link_exchange}}};
 
 /// The defaults of a device, by which nothing is lost where nothing was tuned.
-TunedValues default_values(const DeviceInfo& device);
+TunedValues default_values(const DeviceInfo& device, const TunedFor& what);
 
 /// `kernels` with these values in place of its own; links as it says, where it says so. UserError for values that name
 /// nothing.

@@ -63,7 +63,7 @@ void for_each_candidate(const Space& space, const std::function<void(const Candi
 }
 
 Space space_of(const DeviceInfo& device, const TunedFor& what) {
-    Space space{.knobs = {}, .defaults = default_values(device), .start = {}};
+    Space space{.knobs = {}, .defaults = default_values(device, what), .start = {}};
     const bool cpu = device.type == "cpu", all_objects = what.accel == RAYA_ACCEL_NONE;
     const auto add = [&](std::uint32_t TunedValues::*value, Values values) {
         add_default(values, space.defaults.*value);
@@ -72,10 +72,10 @@ Space space_of(const DeviceInfo& device, const TunedFor& what) {
         space.knobs.push_back({value, std::move(values)});
     };
     const std::uint32_t most = most_group_size(device);
-    const bool slow_to_compile = device.loop_turns > 0;  // llvmpipe: minutes and gigabytes for several lanes
-    add(&TunedValues::lanes, slow_to_compile ? Values{1} : Values{1, 4, 8, 16});
+    const bool llvmpipe = device.loop_turns > 0;  // vectors of work-items; minutes and gigabytes for several lanes
+    add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
     const bool keeps_order = cpu && what.torus;  // of packets, where a node is one work-item (docs/packets.md)
-    const std::uint32_t most_on_cpu = keeps_order ? 1 : std::min(4u, most);
+    const std::uint32_t most_on_cpu = keeps_order ? 1 : std::min(llvmpipe ? 16u : 4u, most);
     add(&TunedValues::group, cpu ? group_sizes(1, most_on_cpu) : group_sizes(16, most));
     if (takes_register_limit(device)) add(&TunedValues::registers, {0, 64, 96, 128, 168});
     if (all_objects) add(&TunedValues::local_words, {0, 1});

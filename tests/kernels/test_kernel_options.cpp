@@ -6,6 +6,7 @@
 
 #include "host/error.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/kernels/tuned.hpp"
 
 using namespace raya;
 using Catch::Contains;
@@ -98,4 +99,20 @@ TEST_CASE("lanes and group size follow the device", "[ring]") {
     CHECK(default_group_size(a_device("cpu", 16, 4096)) == 1);
     CHECK(default_group_size(a_device("gpu", 1, 1024)) == 128);
     CHECK(default_group_size(a_device("gpu", 1, 8)) == 8);
+    CHECK(default_group_size(a_device("gpu", 1, 1024), true) == 128);
+}
+
+TEST_CASE("llvmpipe, which makes vectors of work-items, has groups of 8 and one lane; its torus nodes one work-item",
+          "[ring]") {
+    DeviceInfo llvmpipe = a_device("cpu", 1, 1024);
+    llvmpipe.loop_turns = 65'535;
+    CHECK(default_lanes(llvmpipe) == 1);
+    CHECK(default_group_size(llvmpipe) == 8);
+    CHECK(default_group_size(llvmpipe, true) == 1);
+    CHECK(default_group_size(a_device("cpu", 16, 4096), true) == 1);
+    for (const bool torus : {false, true}) {
+        const KernelChoice whole = chosen({}, llvmpipe, {.torus = torus});
+        CHECK(whole.group_size == default_group_size(llvmpipe, torus));
+        CHECK(chosen({.lanes = 4}, llvmpipe, {.torus = torus}).group_size == whole.group_size);
+    }
 }

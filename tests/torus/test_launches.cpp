@@ -136,8 +136,8 @@ TEST_CASE("links go as the device was tuned to, unless they are named", "[torus]
     const TorusResult untuned = rendered(LinkMove::kOfDevice);
     CHECK(untuned.links_origin == (cpu ? "defaults" : "measured"));
     if (cpu) CHECK_FALSE(untuned.links_by_kernel);
-    const TunedUse use([](const DeviceInfo& device, const TunedFor&) {
-        TunedValues values = default_values(device);
+    const TunedUse use([](const DeviceInfo& device, const TunedFor& what) {
+        TunedValues values = default_values(device, what);
         values.link_exchange = static_cast<std::uint32_t>(LinkMove::kKernel);
         return std::optional(TunedChoice{values, "FILE, DATE"});
     });

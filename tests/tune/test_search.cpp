@@ -193,7 +193,7 @@ TEST_CASE("a space has the defaults in it, and what the device takes", "[tune]")
             device.native_float_width = 8;
             const Space space = space_of(device, {.accel = accel});
             CAPTURE(type, most, platform, accel);
-            CHECK(space.values_of(space.start) == default_values(device));
+            CHECK(space.values_of(space.start) == default_values(device, {.accel = accel}));
             bool limits_registers = false;
             for (const Knob& knob : space.knobs) limits_registers |= knob.value == &TunedValues::registers;
             CHECK(limits_registers == (device.platform == "NVIDIA CUDA"));
@@ -204,6 +204,23 @@ TEST_CASE("a space has the defaults in it, and what the device takes", "[tune]")
                     device));
             });
         }
+}
+
+TEST_CASE("groups on CPUs: a few work-items, more where they are a vector's, one for a torus node", "[tune]") {
+    const auto groups_of = [](std::uint32_t loop_turns, const TunedFor& what) {
+        DeviceInfo device;
+        device.type = "cpu";
+        device.max_group_size = 256;
+        device.loop_turns = loop_turns;
+        for (const Knob& knob : space_of(device, what).knobs)
+            if (knob.value == &TunedValues::group) return knob.values;
+        return std::vector<std::uint32_t>{};
+    };
+    const std::uint32_t llvmpipe = 65'535;
+    CHECK(groups_of(0, {}) == std::vector<std::uint32_t>{1, 2, 4});
+    CHECK(groups_of(llvmpipe, {}) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
+    for (const std::uint32_t turns : {0u, llvmpipe})
+        CHECK(groups_of(turns, {.torus = true}) == std::vector<std::uint32_t>{1});
 }
 
 TEST_CASE("how packets come over links is a knob of the torus alone, with copies by name where they are no default",
