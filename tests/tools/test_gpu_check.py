@@ -2,7 +2,7 @@
 """tools/gpu_check with faults planted: in kernels, in the budget, in what compilers say; and without compilers. Few kernels, some seconds.
   test_gpu_check.py BUILD     the build folder: kernel_builds and patch_kernels
 77 where no compiler for GPUs is here, once what needs none is done."""
-import csv, json, os, pathlib, subprocess, sys, tempfile
+import csv, json, os, pathlib, subprocess, sys, tempfile, time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -97,7 +97,7 @@ if done.returncode == 3:
     sys.exit(77)
 check("--only", "no such kernel", code=2, texts=["there are", "ring/trace"])
 check("--kernel-dir", "/nowhere", code=2, texts=["/nowhere"])
-told = check(*small)
+told = told_first = check(*small)
 versions, kernels = told["versions"], told["kernels"]
 expect([k["target"] for k in kernels] == list(versions) and all(k["kernel"] == "torus/compose" and k["registers"] > 0 for k in kernels), kernels)
 
@@ -150,4 +150,14 @@ if able:
     kept = "__attribute__((noinline)) float kept(float x) { return x * x; }\n"
     check(*small, "--targets", able, "--kernel-dir", patched("torus/compose.cl", (head, kept + head), (sum_line, "sum.x = kept(c.x);")), code=4,
           texts=[f"torus/compose fp32, {able}: a call is left: "])
+
+# What has not changed is not compiled again, and its figures are the same; a comment is no change, the smallest piece of code is.
+looks = len(versions) - ("sm_90" in versions and "sm_80" in versions)  # NVIDIA's are one
+expect(check(*small, "--anew", texts=["0 of 0 builds known"]) == told_first == check(*small, texts=[f"{looks} of {looks} builds known"]))
+check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[f"{looks} of {looks} builds known"])
+changed = "--kernel-dir", patched("torus/compose.cl", (sum_line, f"sum.x = c.x * {time.time_ns() % 10**9}.0f;"))  # not in any run before
+check(*small, *changed, texts=[f"0 of {looks} builds known"])
+check(*small, *changed, texts=[f"{looks} of {looks} builds known"])
+for _ in range(2):  # what has a fault is told each time
+    check(*small, "--kernel-dir", patched("torus/compose.cl", (sum_line, "sum.x = (float)((double)c.x * c.y / 3.0);")), code=4, texts=["; 0 of "])
 print(f"tools/gpu_check: as expected, for {', '.join(versions)}")

@@ -28,6 +28,10 @@ def waves_of(vector, scalar):
     return 4 * min(8, 512 // rounded_up(max(vector, 1), 8), 800 // rounded_up(max(scalar, 1), 16))
 
 
+def options_of(target):
+    return ["-target", "amdgcn-amd-amdhsa", f"-mcpu={target}"]
+
+
 class Amd:
     targets = list(CORES)
 
@@ -44,12 +48,14 @@ class Amd:
     def together(targets):
         return [[target] for target in targets]
 
+    def seen(self, folder, build, targets):
+        return b"\0".join(self.clang.preprocessed(folder, build, options_of(target)) for target in targets)
+
     def look(self, folder, build, targets):
         """Figures and faults of the build's kernels for those of its targets."""
         figures, faults = [], []
         for target in targets:
-            text, error = self.clang.assembly(folder, build, LIBRARY,
-                                              ["-target", "amdgcn-amd-amdhsa", f"-mcpu={target}"])
+            text, error = self.clang.assembly(folder, build, LIBRARY, options_of(target))
             said = [f"does not build: {error}"] if error else faults_of(text)
             faults += [Fault(build["file"].removesuffix(".cl"), build["variant"], target, what) for what in said]
             figures += [] if error else self.figures(build, target, text)

@@ -23,6 +23,11 @@ class Clang:
         digest = hashlib.sha256((self.libclc / library).read_bytes()).hexdigest()[:8]
         return f"clang {number[1] if number else said.split(chr(10))[0]}; libclc {digest}"
 
+    def preprocessed(self, folder, build, options):
+        """The build's text as the compiler itself gets it; empty where it does not come so far."""
+        done = subprocess.run([self.program, "-x", "cl", "-nogpulib", *options, *build["options"], "-E", "-P", str(folder / build["source"])], capture_output=True)
+        return b"" if done.returncode else b"\n".join(filter(None, map(bytes.strip, done.stdout.splitlines())))
+
     def assembly(self, folder, build, library, options):
         """The text, and None; or None, and the compiler's first error."""
         to = folder / f"{build['source']}.{library}.s"

@@ -31,16 +31,29 @@ class Intel:
     def together(targets):
         return [[target] for target in targets]  # the compiler takes one after another
 
+    @staticmethod
+    def compiled(folder, build, target, to, *more):
+        """Whether it is, and what was said."""
+        done = subprocess.run(["ocloc", "compile", *more, "-file", str(folder / build["source"]), "-device", target,
+                               "-options", " ".join(build["options"]), "-out_dir", str(to)], capture_output=True, text=True)
+        return done.returncode == 0, done.stdout + done.stderr
+
+    def seen(self, folder, build, targets):
+        """SPIR-V, which takes no time beside what is made of it."""
+        found = []
+        for target in targets:
+            to = folder / target / "spirv" / build["source"]
+            done, _ = self.compiled(folder, build, target, to, "-spv_only")
+            found += [path.read_bytes() for path in to.glob("*.spv")] if done else []
+        return b"".join(found) if len(found) == len(targets) else b""
+
     def look(self, folder, build, targets):
         """Figures and faults of the build's kernels for those of its targets."""
         figures, faults = [], []
         for target in targets:
             to = folder / target / build["source"]
-            done = subprocess.run(["ocloc", "compile", "--format", "zebin", "-file", str(folder / build["source"]),
-                                   "-device", target, "-options", " ".join(build["options"]), "-out_dir", str(to)],
-                                  capture_output=True, text=True)
-            said = done.stdout + done.stderr
-            made = [next(to.glob(f"*.{end}"), None) for end in ("bin", "spv")] if done.returncode == 0 else [None]
+            done, said = self.compiled(folder, build, target, to, "--format", "zebin")
+            made = [next(to.glob(f"*.{end}"), None) for end in ("bin", "spv")] if done else [None]
             if not all(made):
                 told = [f"does not build: {first_error(said)}"]
             else:

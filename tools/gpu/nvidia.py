@@ -59,6 +59,9 @@ class Nvidia:
     def together(targets):
         return [targets]  # one assembly
 
+    def seen(self, folder, build, targets):
+        return self.clang.preprocessed(folder, build, OPTIONS)
+
     def look(self, folder, build, targets):
         """Figures and faults of the build's kernels for those of its targets."""
         def fault(target, text):
