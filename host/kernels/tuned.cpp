@@ -15,7 +15,11 @@ TunedSource& source_in_use() {
 }  // namespace
 
 TunedValues default_values(const DeviceInfo& device, const TunedFor& what) {
-    return {.lanes = default_lanes(device), .group = default_group_size(device, what.torus)};
+    constexpr std::uint32_t kSpheresPassed = 16;  // on llvmpipe, where a loop's turn costs more than a sphere
+    const bool ring_of_all = !what.torus && what.accel == RAYA_ACCEL_NONE;
+    return {.lanes = default_lanes(device),
+            .group = default_group_size(device, what.torus),
+            .batch = ring_of_all && what.fp32 && device.loop_turns > 0 ? kSpheresPassed : 0};
 }
 
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {

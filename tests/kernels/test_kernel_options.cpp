@@ -113,6 +113,10 @@ TEST_CASE("llvmpipe, which makes vectors of work-items, has groups of 8 and one 
     for (const bool torus : {false, true}) {
         const KernelChoice whole = chosen({}, llvmpipe, {.torus = torus});
         CHECK(whole.group_size == default_group_size(llvmpipe, torus));
+        CHECK(whole.more.sphere_batch == (torus ? 0 : 16));
         CHECK(chosen({.lanes = 4}, llvmpipe, {.torus = torus}).group_size == whole.group_size);
     }
+    for (const TunedFor& what :
+         {TunedFor{.accel = RAYA_ACCEL_GRID}, TunedFor{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})
+        CHECK(chosen({}, llvmpipe, what).more.sphere_batch == 0);
 }
