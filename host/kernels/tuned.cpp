@@ -15,7 +15,7 @@ TunedSource& source_in_use() {
 }  // namespace
 
 TunedValues default_values(const DeviceInfo& device, const TunedFor& what) {
-    constexpr std::uint32_t kSpheresPassed = 16;  // on llvmpipe, where a loop's turn costs more than a sphere
+    constexpr std::uint32_t kSpheresPassed = 16;  // on llvmpipe, as measured (docs/tuning.md)
     const bool ring_of_all = !what.torus && what.accel == RAYA_ACCEL_NONE;
     return {.lanes = default_lanes(device),
             .group = default_group_size(device, what.torus),
