@@ -39,7 +39,7 @@ struct KernelOptions {
 };
 
 /// How packets come over the links of a torus's device: as copies between buffers, as a kernel of their own, or as
-/// suits the device: copies on a CPU, elsewhere what takes less time, measured. The same packets arrive.
+/// suits the device: the kernel on a CPU, elsewhere what takes less time, measured. The same packets arrive.
 enum class LinkMove : std::uint32_t { kOfDevice, kCopies, kKernel };
 
 /// How the kernels are built for a device and what else is run there, as far as the user or a check chooses.

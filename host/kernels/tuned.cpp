@@ -47,8 +47,10 @@ KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedF
         if (!links_named && kernels.link_move != LinkMove::kOfDevice) kernels.link_origin = kernels.origin;
         return kernels;
     }
-    if (!kernels.lanes) kernels.lanes = default_lanes(device);
-    if (!kernels.group_size) kernels.group_size = default_group_size(device, what.torus);
+    const TunedValues defaults = default_values(device, what);
+    if (!kernels.lanes) kernels.lanes = defaults.lanes;
+    if (!kernels.group_size) kernels.group_size = defaults.group;
+    if (!kernels.more.sphere_batch) kernels.more.sphere_batch = defaults.batch;
     kernels.origin = "options";
     return kernels;
 }

@@ -69,7 +69,7 @@ class TunedUse {
 };
 
 /// `kernels` with lanes and group chosen, and `origin` as reports tell it: "options" where the user has named either,
-/// and then the other is the default; else what is known of the device, or "defaults". `link_origin` is "options" where
+/// and then the rest is the default; else what is known of the device, or "defaults". `link_origin` is "options" where
 /// the user has named links, and empty where they are left to the device.
 KernelChoice chosen(KernelChoice kernels, const DeviceInfo& device, const TunedFor& what);
 

@@ -85,8 +85,8 @@ Space space_of(const DeviceInfo& device, const TunedFor& what) {
         add(&TunedValues::trees, {0, 1, 2, 4, 8});
         add(&TunedValues::beams, {0, 1, 2, 4, 8});
     }
-    // A CPU's own choice is copies.
-    if (what.torus) add(&TunedValues::link_exchange, cpu ? Values{0, kByKernel} : Values{0, kByCopies, kByKernel});
+    // A CPU's own choice is the kernel.
+    if (what.torus) add(&TunedValues::link_exchange, cpu ? Values{0, kByCopies} : Values{0, kByCopies, kByKernel});
     return space;
 }
 

@@ -114,7 +114,9 @@ TEST_CASE("llvmpipe, which makes vectors of work-items, has groups of 8 and one 
         const KernelChoice whole = chosen({}, llvmpipe, {.torus = torus});
         CHECK(whole.group_size == default_group_size(llvmpipe, torus));
         CHECK(whole.more.sphere_batch == (torus ? 0 : 16));
-        CHECK(chosen({.lanes = 4}, llvmpipe, {.torus = torus}).group_size == whole.group_size);
+        const KernelChoice named = chosen({.lanes = 4}, llvmpipe, {.torus = torus});
+        CHECK((named.lanes == 4 && named.group_size == whole.group_size));
+        CHECK(named.more.sphere_batch == whole.more.sphere_batch);
     }
     for (const TunedFor& what :
          {TunedFor{.accel = RAYA_ACCEL_GRID}, TunedFor{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})

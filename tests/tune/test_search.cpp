@@ -223,7 +223,7 @@ TEST_CASE("groups on CPUs: a few work-items, more where they are a vector's, one
         CHECK(groups_of(turns, {.torus = true}) == std::vector<std::uint32_t>{1});
 }
 
-TEST_CASE("how packets come over links is a knob of the torus alone, with copies by name where they are no default",
+TEST_CASE("how packets come over links is a knob of the torus alone, with the kernel by name where it is no default",
           "[tune]") {
     const auto moves_of = [](const char* type, const TunedFor& what) {
         DeviceInfo device;
@@ -234,14 +234,14 @@ TEST_CASE("how packets come over links is a knob of the torus alone, with copies
         return std::vector<std::uint32_t>{};
     };
     CHECK(moves_of("cpu", {}).empty());
-    CHECK(moves_of("cpu", {.torus = true}) == std::vector<std::uint32_t>{0, 2});
+    CHECK(moves_of("cpu", {.torus = true}) == std::vector<std::uint32_t>{0, 1});
     CHECK(moves_of("gpu", {.torus = true}) == std::vector<std::uint32_t>{0, 1, 2});
     DeviceInfo cpu;
     cpu.type = "cpu";
     const Space space = space_of(cpu, {.torus = true});
-    TunedValues kernel = space.defaults;
-    kernel.link_exchange = 2;
-    CHECK_THAT(change_text(space, space.defaults, kernel), Catch::EndsWith(", link exchange own -> kernel"));
+    TunedValues copies = space.defaults;
+    copies.link_exchange = 1;
+    CHECK_THAT(change_text(space, space.defaults, copies), Catch::EndsWith(", link exchange own -> copies"));
 }
 
 }  // namespace
