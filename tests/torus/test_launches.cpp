@@ -90,7 +90,8 @@ TEST_CASE("launches of little work, and links by a kernel, make the image and th
     std::uint64_t once = 0, bounded = 0;
     for (unsigned i = 0; i < quick_cases(40, 300); ++i) {
         const Scene scene = random_view_scene(kRichScenes[i % kRichScenes.size()]);
-        const TorusCase c = random_case(random, scene);
+        TorusCase c = random_case(random, scene);
+        c.link_move = LinkMove::kCopies;
         TorusSettings settings = settings_of(c);
         const std::uint32_t works[] = {1, 7, 100};
         settings.work_per_launch = works[i % 3];
