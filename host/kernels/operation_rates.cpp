@@ -7,9 +7,9 @@
 namespace raya {
 namespace {
 
-// A few a unit on a CPU; enough to hide latencies elsewhere.
-std::size_t work_items(const DeviceInfo& device) {
-    return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 : 2048);
+// A few groups a unit on a CPU; enough to hide latencies elsewhere.
+std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
+    return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 * group : 2048);
 }
 
 }  // namespace
@@ -17,7 +17,7 @@ std::size_t work_items(const DeviceInfo& device) {
 OperationRates::OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes)
     : session_(session),
       group_size_(default_group_size(session.device())),
-      items_(work_items(session.device())),
+      items_(work_items(session.device(), group_size_)),
       lanes_(lanes),
       kernels_(session, {.lanes = lanes, .group_size = group_size_, .format = format}),
       chains_(kernels_.get<Chains>()),

@@ -15,7 +15,7 @@ constexpr int kTimes = 5;               // of which the shortest counts
 
 }  // namespace
 
-// On CPUs the kernel was never slower (docs/tuning.md has figures): there nothing is measured.
+// On CPUs the kernel was faster, or as fast (docs/tuning.md has figures): there nothing is measured.
 void NodeArray::choose_link_move(Kernels& kernels) {
     const LinkMove wanted = settings_.kernels.link_move;
     const bool cpu = session_.device().type == "cpu";
