@@ -38,7 +38,11 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
 }
 
 Session::~Session() {
-    if (!queue_ || !profile_.timed() || verbosity() < kDetailed || std::uncaught_exceptions() > 0) return;
+    if (!queue_) return;  // it has moved
+    // Whatever ends the program next must not find the device at work: PoCL's threads, which may still be compiling a
+    // kernel, end in SIGSEGV when its library is taken down under them. By the call that does not throw.
+    clFinish((*queue_)());
+    if (!profile_.timed() || verbosity() < kDetailed || std::uncaught_exceptions() > 0) return;
     try {
         for (const LabelSummary& label : profile().summary())
             tell(kDetailed, fmt::format("on the device: {} ({}) x {}: {:.3f} ms", label.label, label.kind,

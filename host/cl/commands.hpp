@@ -37,7 +37,8 @@ class Session {
   public:
     explicit Session(const cl::Device& device, Timing timing = Timing::kOn, Transfers transfers = Transfers::kOfDevice);
     Session(Session&&) = default;  // not copied: a copy would report the same commands twice
-    /// Tells the times of its commands to who wants to know (host/files/verbosity.hpp).
+    /// Waits for all commands, those that an exception has overtaken too; tells their times to who wants to know
+    /// (host/files/verbosity.hpp).
     ~Session();
 
     const DeviceInfo& device() const { return info_; }

@@ -1,0 +1,38 @@
+// What a session leaves behind when it ends early: nothing that is still at work.
+#include <catch2/catch.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "host/cl/commands.hpp"
+
+using namespace raya;
+
+TEST_CASE("a session that an exception ends waits for what the device is at", "[cl]") {
+    // The kernel is compiled at this launch, by PoCL, and takes a tenth of a second; nobody else waits for it.
+    const std::string source =
+        "kernel void slow(global uint* a, const uint turns) {\n"
+        "    uint x = a[0];\n"
+        "    for (uint i = 0; i < turns; ++i) x = x * 1664525U + 1013904223U;\n"
+        "    a[0] = x;\n"
+        "}";
+    constexpr cl_uint kTurns = 1u << 25;
+    cl_uint expected = 1, got = 0;
+    for (cl_uint i = 0; i < kTurns; ++i) expected = expected * 1664525U + 1013904223U;
+    cl::Buffer memory;
+    const auto fail = [&] {
+        Session session(choose_device(""));
+        auto slow = session.build("slow", source, {}).kernel<Buffer<cl_uint>&, cl_uint>("slow");
+        Buffer<cl_uint> a = session.buffer<cl_uint>("a", 1);
+        memory = a.memory();
+        session.fill("one", a, 1);
+        session.launch("slow", slow, 1, 1, a, kTurns);
+        session.flush();
+        session.launch("empty", slow, 0, 1, a, kTurns);
+    };
+    CHECK_THROWS_AS(fail(), std::invalid_argument);
+    // A queue of its own knows nothing of the session's commands.
+    const auto context = memory.getInfo<CL_MEM_CONTEXT>();
+    const cl::CommandQueue other(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
+    other.enqueueReadBuffer(memory, CL_TRUE, 0, sizeof got, &got);
+    CHECK(got == expected);
+}
