@@ -53,16 +53,6 @@ static inline void next_points(words scene, tree* t, pixel_store* store, tree_pi
     start_walk(scene, t, fresh, point_rows(store, p), point_columns(store, p));
 }
 
-// Puts the rays that the trees follow into the pool's first slots.
-static inline void put_trees(words scene, tree* trees, ray_pool* pool) {
-    for (uint i = 0; i < RAYA_TREES; ++i) {
-        const mask walking = trees[i].walking;
-        const ray r = {vec_of_lanes(trees[i].ray.origin), vec_of_lanes(trees[i].ray.direction),
-                       choose(walking, num_const(RAYA_FAR), num_const(0.0f))};
-        put_rays(scene, pool, i, &trees[i], walking, &r, 0);
-    }
-}
-
 // Follows the trees to their ends, or until a lane has spent its `work`. Returns whether anything is left to do.
 static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree_pixels* pixels,
                               volatile __local uint* next, uint work) {
@@ -76,9 +66,7 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
         }
         if (!walking) return !store->drained;
         if (mask_any(pool.spent >= (index)(work))) return 1;
-        put_trees(scene, trees, &pool);
-        find_hits(scene, &pool, 0);
-        shade(scene, trees, &pool);
+        follow_trees(scene, trees, &pool);
     }
 }
 

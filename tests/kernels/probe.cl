@@ -49,9 +49,8 @@ void shade_once(__global const uint* restrict job,
     t.level = (index)(level);
     for (uint i = 0; i < RAYA_PENDING; ++i) t.pending[i] = t.ray;
     ray_pool pool;
-    pool.found = closest_hit(job, &((job_words)job)->objects, r, 0);
-    pool.direction = r.direction;
-    shade(job, &t, &pool);
+    open_pool(&pool);
+    follow_trees(job, &t, &pool);
 
     const uint words = 3 + RAYA_EVENTS;
     __global uint* to = state + first * words;

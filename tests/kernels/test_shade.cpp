@@ -139,10 +139,10 @@ void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps
     CHECK(steps.events(ray, at(RAYA_SHADED)) == (hit ? 1u : 0u));
     CHECK(steps.events(ray, at(RAYA_LIT)) == lit);
     CHECK(steps.events(ray, at(RAYA_HIGHLIGHTS)) <= lit);
-    CHECK(steps.events(ray, at(RAYA_SPHERE_TESTS)) == shadow * scene.spheres.size());
-    CHECK(steps.events(ray, at(RAYA_PLANE_TESTS)) == shadow * scene.planes.size());
-    CHECK(steps.events(ray, at(RAYA_POLYGON_TESTS)) == shadow * faces);
-    CHECK(steps.events(ray, at(RAYA_CONE_TESTS)) == shadow * scene.cones.size());
+    CHECK(steps.events(ray, at(RAYA_SPHERE_TESTS)) == (1 + shadow) * scene.spheres.size());
+    CHECK(steps.events(ray, at(RAYA_PLANE_TESTS)) == (1 + shadow) * scene.planes.size());
+    CHECK(steps.events(ray, at(RAYA_POLYGON_TESTS)) == (1 + shadow) * faces);
+    CHECK(steps.events(ray, at(RAYA_CONE_TESTS)) == (1 + shadow) * scene.cones.size());
 }
 
 }  // namespace
