@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace raya {
 namespace {
@@ -15,8 +16,12 @@ constexpr double kFar = 1.5;     // likewise, of two neighbouring values
 class Descent {
   public:
     Descent(const Space& space, const Judge& judge, const SearchEnd& end)
-        : space_(space), judge_(judge), end_(end), result_{.best = space.start} {
+        : space_(space), judge_(judge), end_(end), order_(space.knobs.size()), result_{.best = space.start} {
         costs_[space.start] = 1;
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+        std::stable_sort(order_.begin(), order_.end(), [&space](std::size_t a, std::size_t b) {
+            return space.knobs[a].values.size() < space.knobs[b].values.size();
+        });
     }
 
     SearchResult run() {
@@ -48,11 +53,12 @@ class Descent {
         return true;
     }
 
-    // Knob after knob, until none gains.
+    // Knob after knob, until none gains. Those with the fewest values first: where time ends the search, most knobs
+    // have been moved by then.
     void pass() {
         for (bool gained = true; gained && result_.ended;) {
             gained = false;
-            for (std::size_t knob = 0; knob < space_.knobs.size(); ++knob) gained |= walk(knob);
+            for (const std::size_t knob : order_) gained |= walk(knob);
         }
     }
 
@@ -132,6 +138,7 @@ class Descent {
     const Space& space_;
     const Judge& judge_;
     const SearchEnd& end_;
+    std::vector<std::size_t> order_;  // of the knobs
     SearchResult result_;
     std::map<Candidate, double> costs_;  // over the start's; of what was dropped kNever
 };

@@ -74,8 +74,8 @@ Space space_of(const DeviceInfo& device, const TunedFor& what) {
     const std::uint32_t most = most_group_size(device);
     const bool llvmpipe = device.loop_turns > 0;  // vectors of work-items; minutes and gigabytes for several lanes
     add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
-    const bool keeps_order = cpu && what.torus;  // of packets, where a node is one work-item (docs/packets.md)
-    const std::uint32_t most_on_cpu = keeps_order ? 1 : std::min(llvmpipe ? 16u : 4u, most);
+    // A CPU's torus nodes keep their default, which keeps the order of packets (docs/packets.md).
+    const std::uint32_t most_on_cpu = what.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, most);
     add(&TunedValues::group, cpu ? group_sizes(1, most_on_cpu) : group_sizes(16, most));
     if (takes_register_limit(device)) add(&TunedValues::registers, {0, 64, 96, 128, 168});
     if (all_objects) add(&TunedValues::local_words, {0, 1});

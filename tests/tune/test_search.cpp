@@ -1,4 +1,5 @@
 // The search, over costs that are made up: how near it comes to the best, and in how many trials.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -157,6 +158,26 @@ TEST_CASE("the search ends when it is told to, with the best so far", "[tune]") 
         CHECK(result.tried == most);
         CHECK_FALSE(result.ended);
         CHECK(cost(result.best) <= cost(space.start));
+    }
+}
+
+TEST_CASE("a search whose time is short has moved the knobs of few values", "[tune]") {
+    for (unsigned seed = 1; seed <= 200; ++seed) {
+        std::mt19937 random(seed);
+        Space space = random_space(random);
+        const std::size_t gains = space.knobs.size();  // the last of them
+        space.knobs.push_back({&TunedValues::link_exchange, {0, 1}});
+        space.start.push_back(random() % 2);
+        const auto switches = static_cast<std::size_t>(std::count_if(
+            space.knobs.begin(), space.knobs.end(), [](const Knob& knob) { return knob.values.size() == 2; }));
+        std::size_t judged = 0;
+        const Judge judge = [&](const Candidate& best, const Candidate& candidate) {
+            ++judged;
+            return std::optional(candidate[gains] != best[gains] ? 0.7 : 1.1);
+        };
+        const SearchResult result = search(space, judge, [&] { return judged >= switches; });
+        CAPTURE(seed, switches);
+        CHECK(result.best[gains] != space.start[gains]);
     }
 }
 
