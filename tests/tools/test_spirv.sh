@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every kernel as SPIR-V, the form that drivers take kernels in: made by clang and llvm-spirv, and right by spirv-val's rules for OpenCL 1.2.
-#   tests/tools/test_spirv.sh       77: clang-15, llvm-spirv-15 or spirv-val is missing (Debian: clang-15, llvm-spirv-15, spirv-tools)
+#   tests/tools/test_spirv.sh       77: clang-15, llvm-spirv-15 or spirv-val is missing (tools/setup --gpu)
 # Unoptimised, and SPIR-V 1.0: docs/porting.md tells what llvm-spirv-15 makes of the rest.
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
