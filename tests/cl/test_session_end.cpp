@@ -8,7 +8,7 @@
 using namespace raya;
 
 TEST_CASE("a session that an exception ends waits for what the device is at", "[cl]") {
-    // The kernel is compiled at this launch, by PoCL, and takes a tenth of a second; nobody else waits for it.
+    // The kernel is compiled at this launch, by PoCL, and then takes millions of turns; nobody else waits for it.
     const std::string source =
         "kernel void slow(global uint* a, const uint turns) {\n"
         "    uint x = a[0];\n"
