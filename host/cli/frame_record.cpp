@@ -43,9 +43,8 @@ FrameEntry entry_of(const Json& json) {
     return e;
 }
 
-std::map<std::uint32_t, FrameEntry> entries_of(const std::string& text) {
-    const Json record = Json::parse(text);
-    if (record.at("kind").text() != kKind) throw JsonError("another kind");
+std::map<std::uint32_t, FrameEntry> entries_of(const Json& record) {
+    if (record.at("kind").text() != kKind) throw JsonError("not a record of frames");
     std::map<std::uint32_t, FrameEntry> entries;
     for (const Json& json : record.at("frames").elements()) {
         FrameEntry frame = entry_of(json);
@@ -54,25 +53,13 @@ std::map<std::uint32_t, FrameEntry> entries_of(const std::string& text) {
     return entries;
 }
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
-    throw UserError(fmt::format(
-        "{}: {}; it would be written over by the record of the frames: move it away, or give -o another name",
-        file.string(), why));
-}
-
 }  // namespace
 
 FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) {
     if (!fs::exists(file_)) return;
-    try {
-        entries_ = entries_of(read_file(file_));
-    } catch (const UnreadableFile& why) {
-        refuse(file_, why.what());
-    } catch (const JsonSyntaxError&) {
-        refuse(file_, "no JSON");
-    } catch (const JsonError&) {
-        refuse(file_, "no record of frames");
-    }
+    const JsonSource from{file_.string(),
+                          "move it, or give -o another name: the record of the frames is written to this file"};
+    entries_ = read_json(json_text(file_, from), from, entries_of);
 }
 
 const FrameEntry* FrameRecord::find(std::uint32_t number, const std::string& settings,

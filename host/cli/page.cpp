@@ -13,7 +13,6 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"
 #include "host/error.hpp"
-#include "host/files/read_file.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
@@ -52,15 +51,12 @@ std::string page_of(const Json& report) {
     if (name == kBenchReportKind) return bench_page(report);
     if (name == kVerifyReportKind) return verify_page(report);
     if (kind == nullptr && (report.find("measured") != nullptr || report.find("devices") != nullptr))
-        throw JsonError("it does not say of which command it is: an older raya wrote it");
-    throw JsonError("it is JSON, but no report of raya render, bench or verify");
+        throw JsonError("the report of an older raya, without the command that wrote it");
+    throw JsonError("valid JSON, but not a report of raya render, bench or verify");
 }
 
-[[noreturn]] void refuse(const std::string& name, const std::string& reason) {
-    throw UserError(
-        fmt::format("{}: {}; remedy: a report that this raya writes by raya render, bench or verify with "
-                    "--report FILE.json",
-                    name, reason));
+JsonSource source_of(const std::string& name) {
+    return {name, "a report that this raya writes by raya render, bench or verify with --report FILE.json"};
 }
 
 void make_page(const PageCommand& command) {
@@ -68,13 +64,8 @@ void make_page(const PageCommand& command) {
     std::error_code error;
     if (std::filesystem::equivalent(command.report, command.page, error))
         throw UserError(fmt::format("-o {}: that is the report; name another file", command.page));
-    std::string report;
-    try {
-        report = read_file(command.report, Pipes::kRead);
-    } catch (const UnreadableFile& problem) {
-        throw UserError(fmt::format("{}: cannot be read: {}", command.report, problem.what()));
-    }
-    const std::string page = page_of_report(report, command.report);
+    const std::string name = input_name(command.report);
+    const std::string page = page_of_report(json_text(command.report, source_of(name), Pipes::kRead), name);
     write_whole_file(command.page, page);
     if (!is_quiet())
         fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", command.page,
@@ -91,16 +82,7 @@ void check_page_target(const std::string& option, const std::string& file) {
 }
 
 std::string page_of_report(const std::string& report, const std::string& name) {
-    std::string page;
-    try {
-        page = page_of(Json::parse(report));
-    } catch (const JsonSyntaxError& problem) {
-        refuse(name, fmt::format("it is no JSON (at byte {})", problem.byte));
-    } catch (const JsonError& problem) {
-        refuse(name, fmt::format("no page can be made of it: {}", problem.what()));
-    } catch (const UserError& problem) {  // of a mapping or nodes that cannot be
-        refuse(name, fmt::format("no page can be made of it: {}", problem.what()));
-    }
+    const std::string page = read_json(report, source_of(name), page_of);
     if (page.size() <= kLargestPage) return page;
     throw UserError(fmt::format("{}: its page would have {} bytes, {} at most so that it can be sent", name,
                                 page.size(), kLargestPage));

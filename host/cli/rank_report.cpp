@@ -25,7 +25,7 @@ std::vector<Json> rank_reports(Ranks& ranks, const Session& session, const char*
                       {"waiting_s", work.traffic.waiting_s},
                       {"commands", commands_json(work.commands, true)}};
     std::vector<Json> all;
-    for (const std::string& text : ranks.gather(own.dump())) all.push_back(Json::parse(text));
+    for (const std::string& text : ranks.gather(own.dump())) all.push_back(Json::parse(text, {"the report of a rank"}));
     return all;
 }
 

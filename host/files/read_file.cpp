@@ -22,17 +22,17 @@ struct Descriptor {
 };
 
 void check_kind(const struct stat& status, Pipes pipes) {
-    if (S_ISDIR(status.st_mode)) throw UnreadableFile("it is a folder, not a file");
-    if (S_ISFIFO(status.st_mode) && pipes == Pipes::kRefused) throw UnreadableFile("it is a pipe");
-    if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) throw UnreadableFile("it is not a file");
+    if (S_ISDIR(status.st_mode)) throw UnreadableFile("it is a directory, not a file");
+    if (S_ISFIFO(status.st_mode) && pipes == Pipes::kRefused) throw UnreadableFile("it is a pipe, not a regular file");
+    if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) throw UnreadableFile("not a regular file");
 }
 
-// `told`: bytes that are expected, which may be wrong.
-std::string read_all(int descriptor, std::uint64_t told, std::uint64_t most) {
+// `expected` bytes may be wrong.
+std::string read_all(int descriptor, std::uint64_t expected, std::uint64_t most) {
     constexpr std::size_t kBlock = 1 << 16;
-    std::string bytes(static_cast<std::size_t>(std::min(told, most)), '\0');
+    std::string bytes(static_cast<std::size_t>(std::min(expected, most)) + 1, '\0');  // the last finds the end
     for (std::size_t end = 0;;) {
-        if (end > most) throw UnreadableFile(fmt::format("it has more than {} bytes", most));
+        if (end > most) throw UnreadableFile(fmt::format("larger than {} bytes", most));
         if (end == bytes.size()) bytes.resize(end + std::max(end, kBlock));
         const ssize_t got = ::read(descriptor, bytes.data() + end, bytes.size() - end);
         if (got < 0 && errno != EINTR) refuse(errno);

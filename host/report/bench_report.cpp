@@ -4,20 +4,13 @@
 
 #include <cmath>
 
-#include "host/error.hpp"
 #include "host/files/json.hpp"
-#include "host/files/read_file.hpp"
 #include "host/files/standard_streams.hpp"
 
 namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-    throw UserError(fmt::format("{}: {}; remedy: make a baseline with: raya bench --report {}", input_name(path),
-                                reason, path.string()));
-}
 
 Json row_json(const BenchMeasurement& row) {
     Json json = measured_json(row);
@@ -53,7 +46,12 @@ BenchMeasurement row_of(const Json& json) {
             .build_options = text("build_options")};
 }
 
+bool can_be_a_time(double seconds) { return std::isfinite(seconds) && seconds > 0; }
+
 BenchReport report_of(const Json& json) {
+    const Json* const kind = json.find("kind");
+    if (kind == nullptr || !kind->is_text() || kind->text() != kBenchReportKind)
+        throw JsonError("valid JSON, but not a report of raya bench");
     const Json& device = json.at("device");
     BenchReport report{.raya = json.at("raya").text(),
                        .device = device.at("name").text(),
@@ -62,18 +60,13 @@ BenchReport report_of(const Json& json) {
                        .driver = device.at("driver").text(),
                        .rows = {}};
     for (const Json& row : json.at("rows").elements()) report.rows.push_back(row_of(row));
+    if (report.rows.empty()) throw JsonError("it has no rows");
+    for (const BenchMeasurement& row : report.rows)
+        if (!can_be_a_time(row.best_s) || !can_be_a_time(row.median_s) || row.rays == 0)
+            throw JsonError(
+                fmt::format("row {} of {} lanes has rays or times that are not positive", row.format, row.lanes));
     return report;
 }
-
-std::string contents(const fs::path& path) {
-    try {
-        return read_file(path);
-    } catch (const UnreadableFile& error) {
-        refuse(path, fmt::format("cannot be read: {}", error.what()));
-    }
-}
-
-bool can_be_a_time(double seconds) { return std::isfinite(seconds) && seconds > 0; }
 
 }  // namespace
 
@@ -100,24 +93,8 @@ std::string bench_report_text(const BenchReport& report) {
 }
 
 BenchReport read_bench_report(const fs::path& path) {
-    BenchReport report;
-    try {
-        const Json json = Json::parse(contents(path));
-        const Json* kind = json.find("kind");
-        if (kind == nullptr || !kind->is_text() || kind->text() != kBenchReportKind)
-            refuse(path, "it is JSON, but no report of raya bench");
-        report = report_of(json);
-    } catch (const JsonSyntaxError& error) {
-        refuse(path, fmt::format("it is no JSON (at byte {})", error.byte));
-    } catch (const JsonError& error) {
-        refuse(path, fmt::format("it is no whole report of raya bench: {}", error.what()));
-    }
-    if (report.rows.empty()) refuse(path, "it has no rows");
-    for (const BenchMeasurement& row : report.rows)
-        if (!can_be_a_time(row.best_s) || !can_be_a_time(row.median_s) || row.rays == 0)
-            refuse(path,
-                   fmt::format("row {} of {} lanes has rays or times that are not positive", row.format, row.lanes));
-    return report;
+    const JsonSource from{input_name(path), "make a baseline with: raya bench --report " + path.string()};
+    return read_json(json_text(path, from), from, report_of);
 }
 
 }  // namespace raya

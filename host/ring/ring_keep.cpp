@@ -20,11 +20,6 @@ constexpr std::uint32_t kFewestOfLane = 16;  // pixels: fewer leave lanes empty 
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-std::string antialias_text(const Antialias& a) {
-    return fmt::format("{}, {}, points {}, threshold {}", antialias_name(a.method), exchange_name(a.exchange),
-                       points_name(a.points), a.threshold);
-}
-
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
 }
@@ -55,16 +50,24 @@ void RingRenderer::in_bands(std::uint32_t pass, PixelRange range, RingResult& re
 
 StateSettings RingRenderer::state_settings() const {
     const raya_mapping& m = settings_.mapping;
-    return {{"version of raya", raya_version()},
-            {"image", fmt::format("{} x {}", m.width, m.height)},
-            {"mapping", fmt::format("{} on {} PEs", mapping_text(m), m.pes)},
-            {"format", format_name(settings_.format)},
-            {"anti-aliasing", antialias_text(settings_.antialias)},
-            {"bounces", std::to_string(settings_.bounces)},
-            {"choice whether costs are kept", keeps_costs() ? "yes" : "no"},
-            {"group", std::to_string(settings_.kernels.group_size)},
-            {"part of the PEs' memories on the device", std::to_string(window_)},
-            {"scene or camera", words_hash(job_.job.words())}};
+    const Antialias& a = settings_.antialias;
+    return {{"raya", raya_version()},
+            {"--size", fmt::format("{}x{}", m.width, m.height)},
+            {"--mapping", mapping_text(m)},
+            {"--fold", m.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic"},
+            {"--pes", std::to_string(m.pes)},
+            {"--format", format_name(settings_.format)},
+            {"--antialias", antialias_name(a.method)},
+            {"--exchange", exchange_name(a.exchange)},
+            {"--points", points_name(a.points)},
+            {"--threshold", fmt::format("{}", a.threshold)},
+            {"--bounces", std::to_string(settings_.bounces)},
+            {"--sampling", settings_.sampling == Sampling::kCorners ? "corners" : "centres"},
+            {"--accel", accel_text(settings_.accel)},
+            {"--cost or --mapping dynamic", keeps_costs() ? "yes" : "no"},
+            {"--group", std::to_string(settings_.kernels.group_size)},
+            {"a device window of", fmt::format("{} pixels", window_)},
+            {"another scene, camera or light", words_hash(job_.job.words())}};
 }
 
 RingState RingRenderer::state(const RingResult& result) {

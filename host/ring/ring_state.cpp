@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "states are written as they lie in memory");
 
-constexpr std::string_view kMagic = "raya state 1\n";
+constexpr std::string_view kMagic = "raya state 2\n";
 constexpr std::size_t kHashLetters = 32;
 
 class Writer {
@@ -42,12 +42,12 @@ class Reader {
     void take(std::vector<T>& values) {
         std::uint64_t count = 0;
         take_raw(&count, sizeof count);
-        if (count > bytes_.size() / sizeof(T)) throw UserError("it is damaged");
+        if (count > bytes_.size() / sizeof(T)) throw UserError("damaged");
         values.resize(count);
         take_raw(values.data(), count * sizeof(T));
     }
     void take_raw(void* to, std::size_t bytes) {
-        if (bytes > bytes_.size()) throw UserError("it is damaged");
+        if (bytes > bytes_.size()) throw UserError("damaged");
         if (bytes > 0) std::memcpy(to, bytes_.data(), bytes);
         bytes_.remove_prefix(bytes);
     }
@@ -77,13 +77,15 @@ Json header_of(const RingState& s, const StateSettings& settings) {
             {"share", s.share}, {"seconds", s.seconds}, {"passes", s.passes.size()}};
 }
 
-// What is compared first is what a reader understands best.
+// The first difference is reported: what a user knows by name comes before hashes.
 void check_settings(const Json& of, const StateSettings& settings) {
     for (const auto& [name, value] : settings) {
-        const Json* const kept = of.find(name);
-        if (kept == nullptr || kept->text() != value)
-            throw UserError(fmt::format("it is of another render: its {} is {}, not {}", name,
-                                        kept == nullptr ? "not told" : kept->text(), value));
+        const std::string& kept = of.at(name).text();
+        if (kept == value) continue;
+        if (name.starts_with("another")) throw UserError("was rendered with " + name);
+        if (value == "yes" || value == "no")
+            throw UserError(fmt::format("was rendered {} {}", value == "yes" ? "without" : "with", name));
+        throw UserError(fmt::format("was rendered with {} {:.80}, not {}", name, kept, value));
     }
 }
 
@@ -98,13 +100,13 @@ std::string state_bytes(const RingState& state, const StateSettings& settings) {
 }
 
 RingState read_state(std::string_view bytes, const StateSettings& settings) {
-    if (!bytes.starts_with(kMagic)) throw UserError("it is no state of a render");
+    if (!bytes.starts_with(kMagic)) throw UserError("not a checkpoint of this version of raya");
     if (bytes.size() < kMagic.size() + kHashLetters ||
         bytes_hash(bytes.substr(0, bytes.size() - kHashLetters)) != bytes.substr(bytes.size() - kHashLetters))
-        throw UserError("it is damaged");
+        throw UserError("damaged");
     bytes = bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHashLetters);
     const std::size_t end = bytes.find('\n');
-    const Json header = Json::parse(std::string(bytes.substr(0, end)));
+    const Json header = Json::parse(std::string(bytes.substr(0, end)), {"damaged header"});
     check_settings(header.at("of"), settings);
     RingState state;
     state.pass = static_cast<std::uint32_t>(header.at("pass").whole(1));

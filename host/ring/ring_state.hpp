@@ -33,14 +33,13 @@ struct RingState {
     std::vector<std::uint64_t> all_costs;
 };
 
-/// What a state is of, so that no other render goes on with it: name and value of whatever its buffers and their values
-/// follow from.
+/// Name and value of whatever a checkpoint's buffers and their values follow from, so that no other render resumes it.
+/// The name is an option, or words that read well after "was rendered with"; of a flag the value is "yes" or "no".
 using StateSettings = std::vector<std::pair<std::string, std::string>>;
 
 std::string state_bytes(const RingState& state, const StateSettings& settings);
 
-/// Throws UserError without the file's name: no state, damaged, cut short, or of another render, and in what it
-/// differs.
+/// Throws UserError without the file's name: not a checkpoint, damaged, or of another render, and in what it differs.
 RingState read_state(std::string_view bytes, const StateSettings& settings);
 
 /// How a render keeps its state.

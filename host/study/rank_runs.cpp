@@ -2,32 +2,23 @@
 
 #include <fmt/core.h>
 
-#include "host/files/read_file.hpp"
 #include "host/files/temporary_folder.hpp"
 
 namespace raya {
 namespace {
 
-// What ranks have written or printed; other programs may stand behind RAYA_MPIRUN.
+// What ranks have written or printed; RAYA_MPIRUN may name another program.
 template <class Read>
-auto read_as(const std::string& text, const char* what, Read&& read) {
-    try {
-        return read(Json::parse(text));
-    } catch (const JsonError& error) {
-        throw RanksFailure(fmt::format("what the ranks tell is no {}: {}", what, error.what()));
-    } catch (const JsonSyntaxError&) {
-        throw RanksFailure(fmt::format("what the ranks tell is no {}", what));
-    }
+auto read_as(const std::string& text, const char* what, Read&& read) try {
+    return read_json(text, {what}, read);
+} catch (const UserError& error) {
+    throw RanksFailure(error.what());
 }
 
-std::string report_text(const std::string& file) {
-    try {
-        return read_file(file);
-    } catch (const UnreadableFile& error) {
-        throw RanksFailure(fmt::format(
-            "{}: the report of rank 0 cannot be read: {}; remedy: let TMPDIR name a folder that its host has too", file,
-            error.what()));
-    }
+std::string report_text(const std::string& file) try {
+    return json_text(file, {file, "let TMPDIR name a folder that the host of rank 0 has too"});
+} catch (const UserError& error) {
+    throw RanksFailure(error.what());
 }
 
 }  // namespace
@@ -70,11 +61,11 @@ RankedRender render_on_ranks(const Mpirun& mpirun, std::uint32_t ranks, std::opt
     all.insert(all.end(), arguments.begin(), arguments.end());
     all.insert(all.end(), {"--quiet", "-o", (folder / "image.pfm").string(), "--report", report});
     mpirun.run(ranks, threads, all);
-    return read_as(report_text(report), "report of raya render", ranked_render);
+    return read_as(report_text(report), "the ranks' report of raya render", ranked_render);
 }
 
 PingReport ping_of(const Mpirun& mpirun, std::uint32_t ranks, std::optional<std::uint32_t> threads) {
-    return read_as(mpirun.run(ranks, threads, {"ping"}), "report of raya ping", PingReport::of);
+    return read_as(mpirun.run(ranks, threads, {"ping"}), "the ranks' report of raya ping", PingReport::of);
 }
 
 }  // namespace raya

@@ -36,7 +36,7 @@ Json to_json(const TunedEntry& entry) {
 // Which of two or more words a member is.
 std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& words) {
     const auto found = std::find(words.begin(), words.end(), json.at(key).text());
-    if (found == words.end()) throw JsonError(fmt::format("{} \"{}\"", key, json.at(key).text()));
+    if (found == words.end()) throw JsonError(fmt::format("{} \"{:.40}\"", key, json.at(key).text()));
     return static_cast<std::uint32_t>(found - words.begin());
 }
 
@@ -58,7 +58,7 @@ Json device_json(const DeviceInfo& device) {
 }
 
 void check_is_of(const Json& json, const DeviceInfo& device) {
-    if (!json.find("kind") || json.at("kind").text() != kKind) throw UserError(fmt::format("no file of {}", kKind));
+    if (!json.find("kind") || json.at("kind").text() != kKind) throw UserError(fmt::format("not a file of {}", kKind));
     const auto check = [](const std::string& is, const std::string& must, const char* what) {
         if (is != must) throw UserError(fmt::format("of another {}: {}, not {}", what, is, must));
     };
@@ -69,16 +69,19 @@ void check_is_of(const Json& json, const DeviceInfo& device) {
         check(then.at(key).text(), now.at(key).text(), ("device's " + key).c_str());
 }
 
+TunedFile file_of(const Json& json, const DeviceInfo& device) {
+    check_is_of(json, device);
+    TunedFile file{.date = json.at("date").text(), .entries = {}};
+    for (const Json& entry : json.at("tuned").elements()) file.entries.push_back(entry_of(entry, device));
+    return file;
+}
+
 constexpr std::uint64_t kMostBytes = 1 << 20;
 
 std::optional<TunedFile> read_kept(const fs::path& path, const DeviceInfo& device) {
     std::error_code none;
     if (!fs::exists(path, none)) return {};
-    try {
-        return read_tuned(read_file(path, Pipes::kRefused, kMostBytes), device);
-    } catch (const UnreadableFile& error) {
-        throw UserError(error.what());
-    }
+    return read_tuned(json_text(path, {path}, Pipes::kRefused, kMostBytes), path, device);
 }
 
 // Of a name what file systems take.
@@ -120,18 +123,8 @@ std::string tuned_text(const DeviceInfo& device, const TunedFile& file) {
            "\n";
 }
 
-TunedFile read_tuned(const std::string& text, const DeviceInfo& device) {
-    try {
-        const Json json = Json::parse(text);
-        check_is_of(json, device);
-        TunedFile file{.date = json.at("date").text(), .entries = {}};
-        for (const Json& entry : json.at("tuned").elements()) file.entries.push_back(entry_of(entry, device));
-        return file;
-    } catch (const JsonSyntaxError& error) {
-        throw UserError(fmt::format("damaged: byte {} cannot stand there", error.byte));
-    } catch (const JsonError& error) {
-        throw UserError(fmt::format("damaged: {}", error.what()));
-    }
+TunedFile read_tuned(const std::string& text, const std::string& name, const DeviceInfo& device) {
+    return read_json(text, {name}, [&](const Json& json) { return file_of(json, device); });
 }
 
 fs::path tuned_place(const DeviceInfo& device) {
@@ -172,8 +165,7 @@ TunedSource kept_choices(std::function<void(const std::string&)> warn) {
         try {
             if (first) at->second = read_kept(path, device);
         } catch (const UserError& error) {
-            warn(fmt::format("{}: {}; it is ignored, remedy: raya bench --tune writes it anew", path.string(),
-                             error.what()));
+            warn(fmt::format("{}; the file is ignored, remedy: raya bench --tune writes it anew", error.what()));
         }
         if (!at->second) return {};
         for (const TunedEntry& entry : at->second->entries)

@@ -33,9 +33,9 @@ std::string tuned_file_name(const DeviceInfo& device);
 /// The file's text. It names device, driver and raya's version.
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file);
 
-/// Reads such a text. Throws UserError, which tells what is wrong, where it is none, is damaged, has values that the
-/// device does not take, or is of another device, driver or version of raya.
-TunedFile read_tuned(const std::string& text, const DeviceInfo& device);
+/// Reads such a text of the file `name`. UserError where it is another text, damaged, has values that the device does
+/// not take, or is of another device, driver or version of raya.
+TunedFile read_tuned(const std::string& text, const std::string& name, const DeviceInfo& device);
 
 /// The file of a device, in a folder that is made. UserError where there is no place, or it cannot be written.
 std::filesystem::path tuned_place(const DeviceInfo& device);

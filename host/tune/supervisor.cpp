@@ -80,7 +80,7 @@ Trial supervise_trial(const std::vector<std::string>& arguments, const TrialOrde
     while (!told.ended()) {
         std::string line;
         const OwnProcess::Read read = process.read(line, std::chrono::milliseconds(200));
-        if (read == OwnProcess::Read::kLine) told.take(Json::parse(line));
+        if (read == OwnProcess::Read::kLine) told.take(Json::parse(line, {"the trial's process"}));
         if (read == OwnProcess::Read::kEnd) told.end(told.failure(), "ended by " + ending_text(process.wait()));
         if (read == OwnProcess::Read::kNothing && running) running(seconds_since(start));
         if (seconds_since(start) > limit_s) told.end(Fate::kTimeout, fmt::format("not done in {:.0f} s", limit_s));

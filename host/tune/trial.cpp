@@ -66,13 +66,14 @@ std::string TrialOrder::text() const {
 }
 
 TrialOrder TrialOrder::of(const std::string& text) {
-    const Json json = Json::parse(text);
-    TrialOrder order{.workload = {json.at("way").text(), parse_format(json.at("format").text())},
-                     .candidates = {},
-                     .samples = static_cast<std::uint32_t>(json.at("samples").whole(1000)),
-                     .stop_early = json.at("stop_early").whole(1) == 1};
-    for (const Json& values : json.at("candidates").elements()) order.candidates.push_back(values_of(values));
-    return order;
+    return read_json(text, {"the order of a trial"}, [](const Json& json) {
+        TrialOrder order{.workload = {json.at("way").text(), parse_format(json.at("format").text())},
+                         .candidates = {},
+                         .samples = static_cast<std::uint32_t>(json.at("samples").whole(1000)),
+                         .stop_early = json.at("stop_early").whole(1) == 1};
+        for (const Json& values : json.at("candidates").elements()) order.candidates.push_back(values_of(values));
+        return order;
+    });
 }
 
 double median_ratio(const std::vector<double>& of, const std::vector<double>& over) {

@@ -17,7 +17,7 @@ struct TrialOrder {
     bool stop_early = true;               // once the last one is far slower than the first
 
     std::string text() const;
-    static TrialOrder of(const std::string& text);  // JsonSyntaxError, JsonError
+    static TrialOrder of(const std::string& text);  // UserError
 };
 
 /// How it ended. The names are those of the T4 format (t4_report.hpp).

@@ -46,7 +46,7 @@ class Supervision {
             const OwnProcess::Read read = process.read(line, std::chrono::seconds(1));
             if (read == OwnProcess::Read::kEnd) break;
             if (read == OwnProcess::Read::kLine)
-                take(Json::parse(line));
+                take(Json::parse(line, {"the process of the checks"}));
             else if (sink_.running && running_)
                 sink_.running(running_->layer, running_->name, seconds());
         }

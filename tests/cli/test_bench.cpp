@@ -35,7 +35,7 @@ TEST_CASE("what a bench would pass over is refused", "[cli]") {
     check_refused(outputs, {"bench", "--ways", "torus", "--mapping", "rows"}, 2, {"--mapping with --ways torus"});
     check_refused(outputs, {"bench", "--ways", "torus,torus", "--pes", "4"}, 2, {"--pes with --ways torus"});
     check_refused(outputs, {"bench", "--ways", "none,grid", "--accel", "grid"}, 2, {"--accel with --ways"});
-    check_refused(outputs, {"bench", "--compare", "/dev/zero"}, 2, {"/dev/zero: cannot be read: it is not a file"});
+    check_refused(outputs, {"bench", "--compare", "/dev/zero"}, 2, {"/dev/zero: cannot be read: not a regular file"});
 }
 
 TEST_CASE("bench --report writes its rows, --compare holds a later run against them", "[cli]") {
@@ -95,7 +95,7 @@ TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cl
     const std::string missing = folder / "missing.json";
     check_refused(outputs, small_bench({"--compare", missing, "--report", outputs / "r.json"}), 2,
                   {"No such file or directory; remedy: make a baseline with: raya bench --report " + missing});
-    check_refused(outputs, small_bench({"--compare", folder / "no.json"}), 2, {"no.json: it is no JSON (at byte 2)"});
+    check_refused(outputs, small_bench({"--compare", folder / "no.json"}), 2, {"no.json:1: not valid JSON (byte 2)"});
     check_refused(outputs, small_bench({"--compare", folder / "no.json", "--report", folder / "no.json"}), 2,
                   {"named by --report and --compare"});
     check_refused(outputs, small_bench({"--report", outputs / "none" / "r.json"}), 2, {"does not exist"});

@@ -245,7 +245,7 @@ TEST_CASE("what cannot be a sequence is refused before anything is rendered", "[
     const RunOutcome run =
         run_raya({"render", scene_file("centre"), "-o", other / "t.ppm", "--frames", "1:4", "--turn", "90"});
     CHECK(run.code == 2);
-    CHECK_THAT(run.err, Catch::Contains("no record of frames"));
+    CHECK_THAT(run.err, Catch::Contains("not a record of frames"));
     CHECK(other.entries() == 1);
 }
 

@@ -77,7 +77,7 @@ TEST_CASE("a file that is there is neither written over nor taken for a state", 
     CHECK_THAT(kept.err, Catch::Contains("give --resume"));
     const RunOutcome resumed = run({"--keep", file, "--resume"});
     CHECK(resumed.code == 2);
-    CHECK_THAT(resumed.err, Catch::Contains("no state of a render"));
+    CHECK_THAT(resumed.err, Catch::Contains("not a checkpoint"));
     CHECK(file_contents(file) == "hours of work");
     CHECK(folder.entries() == 1);
 }

@@ -130,14 +130,15 @@ TEST_CASE("what raya page refuses names the reason and leaves nothing behind", "
     std::ofstream(written / "list.json") << "[1, 2]";
     const std::vector<Row> rows = {
         {written / "none.json", page, "cannot be read: No such file"},
-        {written / "c.pfm", page, "it is no JSON (at byte"},
-        {written / "broken.json", page, "it is no JSON (at byte"},
-        {written / "list.json", page, "no report of raya render, bench or verify"},
-        {scene_file("planes"), page, "it is no JSON"},
+        {written / "c.pfm", page, "not valid JSON (byte"},
+        {written / "broken.json", page, "not valid JSON (byte"},
+        {written / "list.json", page, "not a report of raya render, bench or verify"},
+        {scene_file("planes"), page, "not valid JSON"},
         {written / "r.json", folder / "p.png", "let the name end in .html"},
         {written / "r.json", folder / "no/p.html", "does not exist; make it first"},
-        {changed("old.json", [](Document& r) { r.erase("kind"), r.erase("raya"); }), page, "an older raya wrote it"},
-        {changed("other.json", [](Document& r) { r["kind"] = "raya ping"; }), page, "no report of raya render"},
+        {changed("old.json", [](Document& r) { r.erase("kind"), r.erase("raya"); }), page,
+         "the report of an older raya"},
+        {changed("other.json", [](Document& r) { r["kind"] = "raya ping"; }), page, "not a report of raya render"},
         {changed("small.json", [](Document& r) { r["image"].erase("preview"); }), page, "no small picture"},
         {changed("png.json", [](Document& r) { r["image"]["preview"]["png"] = "\"><script>"; }), page, "no PNG file"},
         {changed("pes.json", [](Document& r) { r["machine"]["pes"] = 7; }), page, "another length than machine.pes"},
@@ -185,7 +186,7 @@ TEST_CASE("reports with something missing or of another kind are refused, never 
             CHECK(page.find("<b>'") == std::string::npos);
             ++made;
         } catch (const UserError& error) {
-            CHECK_THAT(error.what(), StartsWith("r.json: ") && Contains("remedy"));
+            CHECK_THAT(error.what(), StartsWith("r.json:") && Contains("remedy"));
             ++refused;
         }
     }

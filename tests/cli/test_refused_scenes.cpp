@@ -42,7 +42,7 @@ TEST_CASE("a scene that cannot be read is refused", "[cli]") {
     const ScratchFolder scenes, outputs;
     const std::string missing = scenes / "missing.nff";
     check_refused(outputs, render_into(outputs, missing), 2, {missing, "cannot read the scene: No such file"});
-    check_refused(outputs, render_into(outputs, scenes.path()), 2, {scenes.path(), "it is a folder, not a file"});
+    check_refused(outputs, render_into(outputs, scenes.path()), 2, {scenes.path(), "it is a directory, not a file"});
     check_refused(outputs, {"bench", missing}, 2, {missing, "cannot read the scene"});
 }
 

@@ -137,7 +137,7 @@ TEST_CASE("two files on stdout, stdin read twice, and what cannot be a stream ar
         words.insert(words.end(), two.begin(), two.end());
         check_refused(outputs, words, 2, {"only one file can go to stdout"});
     }
-    check_refused(outputs, {"bench", "--compare", "-"}, 2, {"stdin: it is no JSON"});
+    check_refused(outputs, {"bench", "--compare", "-"}, 2, {"stdin:1: not valid JSON"});
     check_refused(outputs, {"study", "fig7", scene, "-o", "-"}, 2, {"-o -: a study is many files"});
     check_refused(outputs, {"bench", "-", "--tune"}, 2, {"bench --tune -: ", "name a file"});
     check_refused(

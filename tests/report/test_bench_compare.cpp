@@ -84,16 +84,17 @@ TEST_CASE("files that are no bench report are refused with a remedy", "[bench]")
         read_bench_report(folder / "none.json"),
         Contains(
             "none.json: cannot be read: No such file or directory; remedy: make a baseline with: raya bench --report"));
-    CHECK_THROWS_WITH(read_bench_report(folder.path()), Contains("it is a folder"));
-    CHECK_THAT(refusal(folder, ""), Contains("it is no JSON (at byte 1)"));
-    CHECK_THAT(refusal(folder, "kernel,lanes\n"), Contains("it is no JSON (at byte 1)"));
-    CHECK_THAT(refusal(folder, good.substr(0, good.size() / 2)), Contains("it is no JSON"));
-    CHECK_THAT(refusal(folder, "[]"), Contains("it is JSON, but no report of raya bench"));
-    CHECK_THAT(refusal(folder, R"({"scene": "centre.nff"})"), Contains("no report of raya bench"));
+    CHECK_THROWS_WITH(read_bench_report(folder.path()), Contains("it is a directory"));
+    CHECK_THAT(refusal(folder, ""), Contains("b.json:1: not valid JSON (byte 1)"));
+    CHECK_THAT(refusal(folder, "kernel,lanes\n"), Contains("b.json:1: not valid JSON (byte 1)"));
+    CHECK_THAT(refusal(folder, good.substr(0, good.size() / 2)), Contains("not valid JSON"));
+    CHECK_THAT(refusal(folder, "[]"), Contains("b.json: valid JSON, but not a report of raya bench"));
+    CHECK_THAT(refusal(folder, R"({"scene": "centre.nff"})"), Contains("not a report of raya bench"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].clear(); })), Contains("it has no rows"));
-    CHECK_THAT(refusal(folder, changed([](auto& j) { j.erase("device"); })), Contains("no whole report"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j.erase("device"); })), Contains("b.json:1: 'device' is missing"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0].erase("hash"); })), Contains("hash"));
-    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0]["lanes"] = "many"; })), Contains("no whole report"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0]["lanes"] = "many"; })),
+               Contains("b.json:1: rows[0].lanes: \"many\" is not a whole number"));
     for (const char* part : {"best", "median"})
         for (const double bad : {0.0, -1.0})
             CHECK_THAT(refusal(folder, changed([&](auto& j) { j["rows"][0]["ms"][part] = bad; })),

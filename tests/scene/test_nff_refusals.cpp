@@ -198,8 +198,8 @@ TEST_CASE("refused: files that cannot be read", "[nff]") {
     CHECK_THROWS_WITH(read_nff(RAYA_SOURCE_DIR "/scenes/none.nff"),
                       Catch::EndsWith("scenes/none.nff: cannot read the scene: No such file or directory"));
     CHECK_THROWS_WITH(read_nff(RAYA_SOURCE_DIR "/scenes"),
-                      Catch::EndsWith("scenes: cannot read the scene: it is a folder, not a file"));
-    CHECK_THROWS_WITH(read_nff("/dev/null"), "/dev/null: cannot read the scene: it is not a file");
+                      Catch::EndsWith("scenes: cannot read the scene: it is a directory, not a file"));
+    CHECK_THROWS_WITH(read_nff("/dev/null"), "/dev/null: cannot read the scene: not a regular file");
     CHECK_THROWS_AS(read_nff(RAYA_SOURCE_DIR "/scenes/none.nff"), UserError);
 }
 

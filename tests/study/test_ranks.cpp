@@ -193,7 +193,8 @@ TEST_CASE("reports of renders and of pings read as such, and nothing else does",
             "rays": {"primary": 8, "reflected": 1, "refracted": 2, "shadow": 3},
             "measured": {"render_s": 0.5, "commands": [
                 {"label": "trace", "kind": "kernel", "launches": 1, "total_ns": 300000000},
-                {"label": "gather", "kind": "read", "launches": 2, "total_ns": 100000000}]}})"));
+                {"label": "gather", "kind": "read", "launches": 2, "total_ns": 100000000}]}})",
+        {"report"}));
     CHECK(render.work == 20);
     CHECK(render.rays == 14);
     CHECK(render.on_processors());
@@ -204,8 +205,9 @@ TEST_CASE("reports of renders and of pings read as such, and nothing else does",
     CHECK(work.trace_s == Approx(0.3));
     CHECK(work.spread_s == Approx(0.1));
     CHECK(work.host_s == Approx(0.1));
-    CHECK_THROWS_AS(ranked_render(Json::parse("{}")), JsonError);
-    CHECK_THROWS_WITH(ping_of(Mpirun("echo", "raya"), 2), Catch::Contains("no report of raya ping"));
+    CHECK_THROWS_AS(ranked_render(Json::parse("{}", {"report"})), JsonError);
+    CHECK_THROWS_WITH(ping_of(Mpirun("echo", "raya"), 2),
+                      Catch::Contains("the ranks' report of raya ping:1: not valid JSON"));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ struct Warned {
 
 TEST_CASE("a file of tuned values comes back as it was written", "[tune]") {
     const DeviceInfo device = some_device();
-    const TunedFile read = read_tuned(tuned_text(device, kFile), device);
+    const TunedFile read = read_tuned(tuned_text(device, kFile), "t.json", device);
     CHECK(read.date == kFile.date);
     REQUIRE(read.entries.size() == kFile.entries.size());
     for (std::size_t i = 0; i < read.entries.size(); ++i) {
@@ -75,23 +75,24 @@ TEST_CASE("a damaged file, and one of something else, is refused with the reason
         REQUIRE(contains(other, from));
         return other.replace(other.find(from), from.size(), to);
     };
-    for (const auto& [bad, reason] : {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "damaged"},
-                                      {"", "damaged"},
-                                      {"{}", "no file of raya bench --tune"},
-                                      {changed("\"version\": 2", "\"version\": 1"), "another form"},
-                                      {changed("\"raya\": \"", "\"raya\": \"9."), "another version of raya: 9."},
-                                      {changed("550.1", "551.0"), "another device's driver: 551.0, not 550.1"},
-                                      {changed("GeForce", "Radeon"), "another device's name"},
-                                      {changed("\"lanes\": 4", "\"lanes\": 5"), "lanes 5"},
-                                      {changed("\"group\": 16", "\"group\": 100000"), "group 100000"},
-                                      {changed("\"batch\": 8", "\"batch\": 33"), "batch 33"},
-                                      {changed("\"link_exchange\": 2", "\"link_exchange\": 3"), "link exchange 3"},
-                                      {changed("\"trees\": 2", "\"trees\": -2"), "damaged"},
-                                      {changed("\"accel\": \"grid\"", "\"accel\": \"octree\""), "octree"},
-                                      {changed("\"beams\"", "\"beam\""), "damaged"}}) {
+    for (const auto& [bad, reason] :
+         {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "not valid JSON"},
+          {"", "t.json:1: not valid JSON (byte 1)"},
+          {"{}", "t.json: not a file of raya bench --tune"},
+          {changed("\"version\": 2", "\"version\": 1"), "another form"},
+          {changed("\"raya\": \"", "\"raya\": \"9."), "another version of raya: 9."},
+          {changed("550.1", "551.0"), "another device's driver: 551.0, not 550.1"},
+          {changed("GeForce", "Radeon"), "another device's name"},
+          {changed("\"lanes\": 4", "\"lanes\": 5"), "lanes 5"},
+          {changed("\"group\": 16", "\"group\": 100000"), "group 100000"},
+          {changed("\"batch\": 8", "\"batch\": 33"), "batch 33"},
+          {changed("\"link_exchange\": 2", "\"link_exchange\": 3"), "link exchange 3"},
+          {changed("\"trees\": 2", "\"trees\": -2"), "tuned[0].values.trees: -2 is negative"},
+          {changed("\"accel\": \"grid\"", "\"accel\": \"octree\""), "octree"},
+          {changed("\"beams\"", "\"beam\""), "tuned[0].values: 'beams' is missing"}}) {
         CAPTURE(reason);
-        CHECK_THROWS_WITH(read_tuned(bad, device), Catch::Contains(reason));
-        CHECK_THROWS_AS(read_tuned(bad, device), UserError);
+        CHECK_THROWS_WITH(read_tuned(bad, "t.json", device), Catch::Contains(reason));
+        CHECK_THROWS_AS(read_tuned(bad, "t.json", device), UserError);
     }
 }
 

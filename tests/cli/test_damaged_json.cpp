@@ -1,0 +1,133 @@
+// Every reader of JSON with every kind of damage: refused in one line with file and line, or warned of; never an
+// internal error.
+#include <fmt/core.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "host/cli/frame_record.hpp"
+#include "host/cli/page.hpp"
+#include "host/error.hpp"
+#include "host/report/bench_report.hpp"
+#include "host/tune/store.hpp"
+#include "tests/cli/run_program.hpp"
+#include "tests/files/scratch_folder.hpp"
+
+namespace raya {
+namespace {
+
+using Catch::Matchers::Contains;
+
+struct Damage {
+    std::string text, reason;
+};
+
+// Damage that no reader can miss, as it is found while the text is parsed.
+std::vector<Damage> unreadable() {
+    const auto deep = [](std::size_t levels) { return std::string(levels, '['); };
+    return {{"", "x.json:1: not valid JSON (byte 1)"},
+            {"\n \n", "x.json:3: not valid JSON"},
+            {"{\"kind\":\n1e400}", "x.json:2: kind: 1e400 is outside the range of double precision"},
+            {"{\"kind\":\n-1e400}", "x.json:2: kind: -1e400 is outside the range of double precision"},
+            {"{\"kind\": [1" + std::string(400, '0') + "]}", "x.json:1: kind[0]: 1000"},
+            {"{\"kind\": \"raya bench\",\n", "x.json:2: not valid JSON"},
+            {"{\"kind\": \"raya bench\"}\n}", "x.json:2: not valid JSON"},
+            {std::string("{\"kind\": \"raya bench\"}\n\0", 24), "x.json:2: not valid JSON (byte 24)"},
+            {std::string("{\"kind\": \"raya\0bench\"}", 23), "x.json:1: not valid JSON"},
+            {"{\"kind\": \"\xff\xfe\"}", "x.json:1: not valid JSON"},
+            {"{\"kind\": \"\\ud800\"}", "x.json:1: not valid JSON"},
+            {"{\"kind\": \"a\nb\"}", "x.json:1: not valid JSON"},
+            {"{\"kind\": \"raya bench\",\n\"kind\": 1}", "x.json:2: kind: the object has this member twice"},
+            {deep(101), "x.json:1: nested more than 100 levels deep"},
+            {deep(1'000'000), "x.json:1: nested more than 100 levels deep"},
+            {"NaN", "x.json:1: not valid JSON"},
+            {"{'kind': 1}", "x.json:1: not valid JSON"}};
+}
+
+// Valid JSON of another kind.
+std::vector<std::string> wrong_kinds() {
+    return {"null",
+            "3",
+            "[]",
+            "\"raya bench\"",
+            "{}",
+            "{\"kind\": 3}",
+            "{\"kind\": []}",
+            "{\"kind\": \"" + std::string(1'000'000, 'k') + "\"}"};
+}
+
+std::string refusal(const auto& read) {
+    try {
+        read();
+    } catch (const UserError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST_CASE("damaged JSON is refused by every reader with file and line", "[cli][json]") {
+    const ScratchFolder folder;
+    const std::string file = folder / "x.json";
+    setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+    unsetenv("RAYA_TUNED");
+    const DeviceInfo device;
+    const std::filesystem::path tuned = tuned_place(device);
+    const auto check = [&](const Damage& damage) {
+        CAPTURE(damage.text.substr(0, 60), damage.reason);
+        std::ofstream(file, std::ios::binary) << damage.text;
+        std::ofstream(tuned, std::ios::binary) << damage.text;
+        std::string warning;
+        CHECK_FALSE(kept_choices([&](const std::string& text) { warning = text; })(device, {}));
+        const std::string in_cache = tuned.string() + damage.reason.substr(std::string("x.json").size());
+        CHECK_THAT(warning, Contains("ignored"));
+        const std::vector<std::string> messages = {refusal([&] { page_of_report(damage.text, "x.json"); }),
+                                                   refusal([&] { read_bench_report(file); }),
+                                                   refusal([&] { FrameRecord record(file); }), warning};
+        for (const std::string& message : messages) {
+            CAPTURE(message);
+            CHECK_THAT(message, Contains(&message == &messages.back() ? in_cache : damage.reason));
+            CHECK(message.find('\n') == std::string::npos);
+            CHECK(message.size() < 600);
+        }
+    };
+    for (const Damage& damage : unreadable()) check(damage);
+    for (const std::string& text : wrong_kinds()) check({text, "x.json"});
+    unsetenv("XDG_CACHE_HOME");
+    setenv("RAYA_TUNED", "off", 1);
+}
+
+TEST_CASE("commands end with exit code 2 at a number that no double holds", "[cli][json]") {
+    const ScratchFolder folder;
+    const std::string file = folder / "x.json";
+    std::ofstream(file) << "{\"kind\": \"raya bench\",\n\"rows\": [1e400]}";
+    const std::string reason = "x.json:2: rows[0]: 1e400 is outside the range of double precision; remedy: ";
+    const Surroundings nothing = {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
+    const std::vector<std::vector<std::string>> commands = {
+        {"page", file, "-o", folder / "x.html"},
+        {"bench", scene_file("planes"), "--compare", file},
+        {"render", scene_file("planes"), "--frames", "1:2", "--turn", "90", "-o", folder / "t.ppm"}};
+    std::filesystem::copy(file, folder / "t-frames.json");
+    for (const std::vector<std::string>& command : commands) {
+        const RunOutcome run = run_raya(command, command[0] == "page" ? nothing : Surroundings{});
+        INFO(run.told());
+        CHECK(run.code == 2);
+        CHECK_THAT(run.err, Contains(command[0] == "render" ? "t-frames.json:2: rows[0]: 1e400" : reason));
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+        CHECK(folder.entries() == 2);
+    }
+}
+
+TEST_CASE("a report of more than 64 MB is refused at once", "[cli][json]") {
+    const ScratchFolder folder;
+    const std::string file = folder / "x.json";
+    std::ofstream(file) << "[1]";
+    std::filesystem::resize_file(file, 65'000'000);
+    const RunOutcome run = run_raya({"page", file, "-o", folder / "x.html"});
+    INFO(run.told());
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Contains(file + ": cannot be read: larger than 64000000 bytes"));
+}
+
+}  // namespace
+}  // namespace raya
