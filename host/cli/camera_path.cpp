@@ -3,12 +3,14 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <map>
 #include <sstream>
 
 #include "host/cli/view_options.hpp"
 #include "host/error.hpp"
 #include "host/files/read_file.hpp"
 #include "host/files/standard_streams.hpp"
+#include "host/scene/nff_tokens.hpp"
 
 namespace raya {
 namespace {
@@ -16,7 +18,9 @@ namespace {
 constexpr std::uint64_t kMostBytes = 1 << 28;
 
 std::string text_of(const std::string& file) try {
-    return read_file(file, Pipes::kRead, kMostBytes);
+    std::string text = read_file(file, Pipes::kRead, kMostBytes);
+    if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+    return text;
 } catch (const UnreadableFile& why) {
     throw UserError(fmt::format("--camera-path {}: {}", file, why.what()));
 }
@@ -25,26 +29,24 @@ double angle_of(const std::string& text) {
     double angle = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), angle);
     if (error != std::errc{} || end != text.data() + text.size())
-        throw UserError(fmt::format("angle {}: must be a number of degrees", text));
+        throw UserError(fmt::format("angle {}: must be a number of degrees", in_quotes(text)));
     return angle;
 }
 
-// `words`: a name and its value, and so on.
+// `words`: pairs of a name and its value.
 ViewOptions camera_of(std::istringstream& words) {
-    ViewOptions camera;
+    std::map<std::string, std::string> values = {{"from", ""}, {"at", ""}, {"up", ""}, {"angle", ""}};
     for (std::string name, value; words >> name;) {
+        const auto known = values.find(name);
+        if (known == values.end())
+            throw UserError(
+                fmt::format("{}: must be from, at, up or angle, each followed by its value", in_quotes(name)));
         if (!(words >> value)) throw UserError(fmt::format("{} has no value", name));
-        if (name == "from")
-            camera.from = value;
-        else if (name == "at")
-            camera.at = value;
-        else if (name == "up")
-            camera.up = value;
-        else if (name == "angle")
-            camera.angle = angle_of(value);
-        else
-            throw UserError(fmt::format("{}: must be from, at, up or angle, each with its value behind it", name));
+        if (!known->second.empty()) throw UserError(fmt::format("'{}' is given twice", name));
+        known->second = value;
     }
+    ViewOptions camera{.from = values["from"], .at = values["at"], .up = values["up"]};
+    if (!values["angle"].empty()) camera.angle = angle_of(values["angle"]);
     return camera;
 }
 

@@ -14,9 +14,9 @@
 namespace raya {
 namespace {
 
-constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e9 in magnitude";
+constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e30 in magnitude";
 constexpr const char* kColour = "must be three numbers R,G,B from 0 to 1e9; 1 is full intensity";
-constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, without negative colours";
+constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, colours from 0 to 1e9";
 
 /// The numbers between commas; none where one of them is no number, or none that can be traced.
 std::vector<double> numbers_of(std::string_view text) {
@@ -26,7 +26,7 @@ std::vector<double> numbers_of(std::string_view text) {
         double number = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
         const bool whole = error == std::errc{} && end == word.data() + word.size();
-        if (!whole || !(std::abs(number) <= kLargestNumber)) return {};
+        if (!whole || !(std::abs(number) <= kLargestLength)) return {};
         numbers.push_back(number);
         if (word.size() == text.size()) return numbers;
         text.remove_prefix(word.size() + 1);
@@ -34,7 +34,7 @@ std::vector<double> numbers_of(std::string_view text) {
 }
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text, const char* legal) {
-    throw UserError(fmt::format("{} {}: {}", option, text, legal));
+    throw UserError(fmt::format("{} {:.60}: {}", option, text, legal));
 }
 
 Vec3 vector_of(const std::string& option, const std::string& text, const char* legal) {
@@ -57,7 +57,7 @@ std::string viewpoint_text(const ViewOptions& v) {
     std::string text;
     for (const auto& [option, value] : v.words())
         if (option != "--background" && option != "--light")
-            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value);
+            text += fmt::format("{}{} {:.60}", text.empty() ? "" : " ", option, value);
     return text;
 }
 

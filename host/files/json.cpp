@@ -121,7 +121,7 @@ std::string JsonText::path_of(const Json* json, std::uint32_t position) {
 }
 
 void JsonSource::refuse(const std::string& reason) const {
-    throw UserError(fmt::format("{}: {}{}{}", name, reason, remedy.empty() ? "" : "; remedy: ", remedy));
+    throw UserError(fmt::format("{}: {:.400}{}{}", name, reason, remedy.empty() ? "" : "; remedy: ", remedy));
 }
 
 void JsonSource::refuse(const JsonError& error, const Json& json, const std::string& text) const {

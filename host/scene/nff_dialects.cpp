@@ -1,6 +1,7 @@
 #include "host/scene/nff_dialects.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "host/scene/nff_tokens.hpp"
 
@@ -47,6 +48,28 @@ bool opens_sense8(std::string_view word) {
     constexpr std::string_view kWord = "nff";
     return std::equal(word.begin(), word.end(), kWord.begin(), kWord.end(),
                       [](char c, char lower) { return is_letter(c) && (c | 0x20) == lower; });
+}
+
+std::string_view foreign_format(std::string_view text) {
+    constexpr std::array kDirectives = {"#include", "#declare", "#version", "#macro", "#default", "//", "/*"};
+    constexpr std::array kBlocks = {"camera", "light_source", "global_settings", "background", "sphere", "plane",
+                                    "box",    "union",        "object",          "mesh",       "mesh2",  "sky_sphere"};
+    constexpr std::array kObj = {"mtllib", "usemtl", "o", "g", "vn", "vt"};
+    const auto is_any = [](const auto& words, std::string_view word) { return std::ranges::count(words, word) > 0; };
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find_first_of(kLineEnds));
+        const std::string_view word = line.substr(0, line.find_first_of(" \t\v\f{"));
+        const std::string_view rest = line.substr(std::min(line.size(), word.size() + 1));
+        if (word == "ply") return "a PLY";
+        if (line.starts_with("glTF")) return "a glTF";
+        if (line.starts_with('{') || line.starts_with('['))
+            return text.find("\"asset\"") != text.npos && text.find("\"scenes\"") != text.npos ? "a glTF" : "a JSON";
+        if (is_any(kDirectives, word) || is_any(kBlocks, word)) return "a POV-Ray";
+        if (is_any(kObj, word) || (word == "v" && reads_as_number(rest))) return "an OBJ";
+        if (!line.empty() && line[0] != '#') return {};
+        text.remove_prefix(std::min(text.size(), line.size() + 1));
+    }
+    return {};
 }
 
 Header mail_header(std::string_view text) {

@@ -13,6 +13,10 @@ bool reads_as_entity(std::string_view keyword, std::string_view rest);
 /// Whether a text with that first word is Sense8's NFF, another format of the same name.
 bool opens_sense8(std::string_view word);
 
+/// The format that a text seems to have where that is not NFF, with its article: "an OBJ", "a PLY", "a glTF", "a
+/// POV-Ray" or "a JSON"; empty where none of these is likely.
+std::string_view foreign_format(std::string_view text);
+
 struct Header {
     std::size_t bytes = 0;  // 0: there is none
     int lines = 0;

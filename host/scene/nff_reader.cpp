@@ -57,15 +57,16 @@ class NffReader {
         add_remark(*remarks_, what, tokens_.entity_line());
     }
 
-    Vec3 read_vector(std::string_view what) {
-        const double x = tokens_.take_number(what);
-        const double y = tokens_.take_number(what);
-        const double z = tokens_.take_number(what);
-        return {x, y, z};
+    double read_length(std::string_view what) { return tokens_.take_number(what, kLargestLength); }
+
+    Vec3 read_vector(std::string_view what, double most = kLargestLength) {
+        Vec3 vector;
+        for (int axis = 0; axis < 3; ++axis) vector[axis] = tokens_.take_number(what, most);
+        return vector;
     }
 
     Colour read_colour(std::string_view what) {
-        const Colour colour = read_vector(what);
+        const Colour colour = read_vector(what, kLargestNumber);
         if (!is_colour(colour)) refuse(fmt::format("{} is negative", what));
         return colour;
     }
@@ -118,7 +119,7 @@ class NffReader {
             if (*part == "at") view.at = read_vector("at");
             if (*part == "up") view.up = read_vector("up");
             if (*part == "angle") view.angle_degrees = tokens_.take_number("angle");
-            if (*part == "hither") view.hither = tokens_.take_number("hither");
+            if (*part == "hither") view.hither = read_length("hither");
             if (*part == "resolution") {
                 view.width = tokens_.take_integer("the width", 1, kLargestSide);
                 view.height = tokens_.take_integer("the height", 1, kLargestSide);
@@ -176,7 +177,7 @@ class NffReader {
 
     void read_sphere() {
         Sphere sphere{read_vector("the centre"), 0, current_surface_};
-        sphere.radius = tokens_.take_number("the radius");
+        sphere.radius = read_length("the radius");
         if (std::abs(sphere.radius) < kSmallestLength)
             return pass_over("the radius of the sphere is zero", "sphere of radius 0, left out");
         scene_.spheres.push_back(sphere);
@@ -210,8 +211,11 @@ class NffReader {
         const OutlineVerdict verdict = tidy_outline(polygon);
         // A triangle is flat but for rounding: one that is not has no area to speak of, and nothing to cut.
         const bool is_sliver = verdict.fault == OutlineFault::kNotFlat && polygon.vertices.size() == 3;
-        if (verdict.fault == OutlineFault::kNoArea || (remarks_ && is_sliver))
-            return pass_over("the polygon " + verdict.reason, "polygon without area, left out");
+        if (verdict.fault == OutlineFault::kNoArea || verdict.fault == OutlineFault::kCrosses ||
+            (remarks_ && is_sliver))
+            return pass_over("the polygon " + verdict.reason, verdict.fault == OutlineFault::kCrosses
+                                                                  ? "polygon that " + verdict.reason + ", left out"
+                                                                  : "polygon without area, left out");
         if (verdict.fault == OutlineFault::kNone) {
             scene_.polygons.push_back(std::move(polygon));
             return;
@@ -231,9 +235,9 @@ class NffReader {
     void read_cone() {
         Cone cone;
         cone.base = read_vector("the base");
-        cone.base_radius = tokens_.take_number("the base radius");
+        cone.base_radius = read_length("the base radius");
         cone.apex = read_vector("the apex");
-        cone.apex_radius = tokens_.take_number("the apex radius");
+        cone.apex_radius = read_length("the apex radius");
         cone.surface = current_surface_;
         const auto [lower, upper] = std::minmax(cone.base_radius, cone.apex_radius);
         if (std::max(-lower, upper) < kSmallestLength)
@@ -253,11 +257,11 @@ class NffReader {
 
     void read_plane() {
         const Vec3 given = read_vector("the normal");
-        Plane plane{unit_vector(given), tokens_.take_number("the distance"), 0};
+        Plane plane{unit_vector(given), read_length("the distance"), 0};
         if (plane.normal == Vec3(0)) refuse("the normal of the plane is zero");
         if (plane.normal != given) plane.distance /= given.length();
-        if (!(std::abs(plane.distance) <= kLargestNumber))
-            refuse("the plane lies too far from the origin: at most 1e9 with a normal of length 1");
+        if (!(std::abs(plane.distance) <= kLargestLength))
+            refuse("the plane lies too far from the origin: at most 1e30 with a normal of length 1");
         plane.surface = take_flat_surface();
         scene_.planes.push_back(plane);
     }
@@ -265,7 +269,7 @@ class NffReader {
     void read_checker() {
         if (checker_) refuse("a second '#raya checker' before a plane or polygon has used the first");
         Checker checker{read_colour("the first colour"), read_colour("the second colour"), 0};
-        checker.size = tokens_.take_number("the size");
+        checker.size = read_length("the size");
         if (checker.size < kSmallestLength) refuse("the size of the checker must be positive");
         checker_ = checker;
         checker_line_ = tokens_.entity_line();

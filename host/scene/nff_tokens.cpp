@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -48,7 +49,6 @@ std::string in_quotes(std::string_view text) {
 
 NffTokens::NffTokens(std::string_view text, std::string name, int first_line)
     : text_(text), name_(std::move(name)), line_(first_line) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
     advance();
 }
@@ -134,7 +134,7 @@ bool NffTokens::skip_unknown() {
 
 bool NffTokens::number_follows() const { return reads_as_number(next_.text); }
 
-double NffTokens::take_number(std::string_view what) {
+double NffTokens::take_number(std::string_view what, double most) {
     const ParsedNumber number = parsed_number(next_.text);
     const bool no_number = number.error == std::errc::invalid_argument;
     const bool cut_short = no_number && next_.first_on_line && !one_line_;
@@ -149,13 +149,13 @@ double NffTokens::take_number(std::string_view what) {
     if (number.error == std::errc::result_out_of_range) refused("is outside the range of double precision");
     if (!number.rest.empty()) refused("is a number with something after it");
     if (!std::isfinite(number.value)) refused("is not a finite number");
-    if (std::abs(number.value) > kLargestNumber) refused("is too large to trace in fp32: at most 1e9; scale the scene");
+    if (std::abs(number.value) > most) refused(fmt::format("is out of range: at most {:.0e} in magnitude", most));
     return number.value;
 }
 
 int NffTokens::take_integer(std::string_view what, int lowest, int highest) {
     const int line = next_.line;
-    const double value = take_number(what);
+    const double value = take_number(what, std::numeric_limits<double>::infinity());
     if (value != std::floor(value) || value < lowest || value > highest)
         refuse(line, fmt::format("{} of {} is {}: must be a whole number from {} to {}", what, in_quotes(entity_),
                                  value, lowest, highest));

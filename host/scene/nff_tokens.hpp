@@ -6,8 +6,13 @@
 
 namespace raya {
 
-/// Numbers beyond this are refused: the fp32 kernels could not trace them.
+/// The largest colour, exponent or other number without a unit.
 inline constexpr double kLargestNumber = 1e9;
+
+/// The largest length. The packer scales lengths into a format's range; products of four must fit double precision.
+inline constexpr double kLargestLength = 1e30;
+
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, which some editors write first
 
 /// A run of characters without white space. At the end of the file `text` is empty.
 struct NffToken {
@@ -34,8 +39,8 @@ class NffTokens {
     /// Takes the word after `#raya`, or one of the words in `v`; `what` names it in messages.
     std::string_view take_word(std::string_view what);
 
-    /// Takes a finite number of at most 1e9 in magnitude; `what` names it in messages ("the radius").
-    double take_number(std::string_view what);
+    /// Takes a finite number of at most `most` in magnitude; `what` names it in messages ("the radius").
+    double take_number(std::string_view what, double most = kLargestNumber);
 
     /// Takes a number that must be whole and lie in [lowest, highest].
     int take_integer(std::string_view what, int lowest, int highest);

@@ -49,12 +49,14 @@ OutlineVerdict tidy_outline(Polygon& polygon) {
         }
         mean += (v - vertices[0]) / static_cast<double>(vertices.size());
     }
-    if (size < kSmallestLength)
-        return {OutlineFault::kNoArea, fmt::format("is smaller than {}; scale the scene", kSmallestLength)};
+    if (size < kSmallestLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kSmallestLength)};
 
     // What rounding alone can make of vertices that lie on one line.
     const double no_area = 1e-12 * size * size + 8 * kEpsilon * reach * size;
     const Vec3 normal = newell_normal(vertices);
+    for (std::size_t i = 2; normal.length() <= no_area && i < vertices.size(); ++i)
+        if ((vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]).length() > no_area)
+            return {OutlineFault::kCrosses, "crosses or retraces itself, so that its signed area is 0"};
     if (normal.length() <= no_area) return {OutlineFault::kNoArea, "has no area"};
 
     double off = 0;

@@ -6,14 +6,15 @@
 
 namespace raya {
 
-/// Lengths below this are refused: in fp32 they vanish beside the rest of a scene.
-inline constexpr double kSmallestLength = 1e-9;
+/// Lengths below this count as 0: products of four must fit double precision. What a number format cannot hold next to
+/// the scene's largest length is the packer's concern (length_scale.hpp), so that a scene may be in any unit.
+inline constexpr double kSmallestLength = 1e-30;
 
 /// How far a vertex may lie from the plane of its polygon, as a share of the polygon's size (the longest side of its
 /// box). Files of six digits stray by some 1e-5; a thousandth is a pixel where the polygon spans 1,000.
 inline constexpr double kFlatness = 1e-3;
 
-enum class OutlineFault { kNone, kNoArea, kNotFlat };
+enum class OutlineFault { kNone, kNoArea, kCrosses, kNotFlat };
 
 /// What is wrong with an outline, and that as the end of a sentence that begins "the polygon".
 struct OutlineVerdict {
@@ -21,7 +22,8 @@ struct OutlineVerdict {
     std::string reason;
 };
 
-/// Drops vertices that repeat their neighbour, with their normals. Whether the outline crosses itself is not looked at.
+/// Drops vertices that repeat their neighbour, with their normals. An outline that crosses itself is detected only
+/// where its signed area is 0.
 OutlineVerdict tidy_outline(Polygon& polygon);
 
 /// `v` with length 1. A vector that has it already, to rounding, is left as it is, so that a scene survives being

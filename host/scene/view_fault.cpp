@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host/scene/nff_tokens.hpp"
 #include "host/scene/outline.hpp"
 
 namespace raya {
@@ -19,6 +20,9 @@ std::string view_fault(const View& view) {
     return {};
 }
 
-bool is_colour(const Colour& colour) { return std::min({colour.x, colour.y, colour.z}) >= 0; }
+bool is_colour(const Colour& colour) {
+    const auto [least, most] = std::minmax({colour.x, colour.y, colour.z});
+    return least >= 0 && most <= kLargestNumber;
+}
 
 }  // namespace raya

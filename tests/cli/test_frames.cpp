@@ -72,19 +72,35 @@ TEST_CASE("a path has a camera in each line", "[cli][frames]") {
     CHECK(numbers("2:3") == std::vector<std::uint32_t>{2, 3});
     CHECK_THROWS_WITH(numbers("2:4"), Catch::Contains("has 3 cameras"));
     CHECK_THROWS_AS(numbers("0:2"), UserError);
-    const std::pair<const char*, const char*> wrong[] = {{"from 1,2", "line 1: --from 1,2: must be"},
-                                                         {"\nfrom", "line 2: from has no value"},
-                                                         {"to 1,2,3", "line 1: to: must be from"},
-                                                         {"angle x", "line 1: angle x: must be a number"},
-                                                         {"angle 180", "line 1: --angle 180"},
-                                                         {"", "no camera"},
-                                                         {"from 1,1,1 at 1,1,1", "line 1: --from 1,1,1 --at 1,1,1"}};
+    const std::pair<const char*, const char*> wrong[] = {
+        {"from 1,2", "line 1: --from 1,2: must be"},
+        {"\nfrom", "line 2: from has no value"},
+        {"to 1,2,3", "line 1: 'to': must be from"},
+        {"angle x", "line 1: angle 'x': must be a number"},
+        {"angle 180", "line 1: --angle 180"},
+        {"from 1,2,3 at 1,1,1 from 4,5,6", "line 1: 'from' is given twice"},
+        {"\nangle 3 angle 3", "line 2: 'angle' is given twice"},
+        {"", "no camera"},
+        {"from 1,1,1 at 1,1,1", "line 1: --from 1,1,1 --at 1,1,1"}};
     for (const auto& [text, message] : wrong) {
         CAPTURE(text);
         write_whole_file(path, text);
         CHECK_THROWS_WITH(read_camera_path(path, view), Catch::Contains(message));
     }
     CHECK_THROWS_WITH(read_camera_path(folder / "none.txt", view), Catch::Contains("--camera-path"));
+    for (const char* name : {"", "from ", "angle ", "from 1,2,"}) {
+        write_whole_file(path, name + std::string(5'000'000, '1') + "x\n");
+        try {
+            read_camera_path(path, view);
+            FAIL("accepted");
+        } catch (const UserError& error) {
+            CHECK(std::string(error.what()).size() < 300 + path.size());
+        }
+    }
+    write_whole_file(path,
+                     "\xEF\xBB\xBF"
+                     "from 0,0,9\n");
+    CHECK(read_camera_path(path, view)[0].from == Vec3(0, 0, 9));
 }
 
 /// A small sequence in a folder of its own.

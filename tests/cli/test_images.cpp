@@ -78,6 +78,9 @@ TEST_CASE("a scene too large for the default machine's format is rendered in oth
     write_whole_file(usual, write_nff(scene));
     write_whole_file(large, write_nff(scaled_scene(scene, 0x1p14)));
     write_whole_file(tiny, write_nff(scaled_scene(scene, 0x1p-20)));
+    const std::string light_years = folder / "light-years.nff", atoms = folder / "atoms.nff";
+    write_whole_file(light_years, write_nff(scaled_scene(scene, 0x1p60)));
+    write_whole_file(atoms, write_nff(scaled_scene(scene, 0x1p-60)));
     for (const char* machine : {"spa", "grande", "torus"}) {
         CAPTURE(machine);
         const Words options = {"--machine", machine, "--size", "24"};
@@ -99,6 +102,8 @@ TEST_CASE("a scene too large for the default machine's format is rendered in oth
         CHECK((below["machine"]["length_exponent"] > 0) == (machine == std::string("spa")));
         CHECK(beyond["image"]["hash"] == as_is["image"]["hash"]);
         CHECK(below["image"]["hash"] == as_is["image"]["hash"]);
+        CHECK(report_of(light_years)["image"]["hash"] == as_is["image"]["hash"]);
+        CHECK(report_of(atoms)["image"]["hash"] == as_is["image"]["hash"]);
         CHECK(as_is["rays"]["primary_hits"] > 0);
     }
 }

@@ -45,7 +45,7 @@ TEST_CASE("a scene times a power of two gives the same bits and counts", "[ring]
             const Scene scene = without_planes(name);
             const RingResult as_is = render_scene(scene, in_format(format));
             CHECK(as_is.all.events[RAYA_PRIMARY_HITS] > 100);
-            for (const int k : {14, -17}) {
+            for (const int k : {14, -17, 40, -40, 80, -80}) {
                 CAPTURE(format, name, k);
                 const RingResult scaled = render_scene(scaled_scene(scene, std::ldexp(1, k)), in_format(format));
                 CHECK(pixel_hash(scaled.image) == pixel_hash(as_is.image));
@@ -86,7 +86,7 @@ TEST_CASE("a scene times a power of ten is the same picture, to rounding", "[rin
     // Lengths that are rounded otherwise move edges by a fraction of a pixel, and rays between mirrors by more.
     for (const auto& [format, most] : {std::pair{"fp32", 1e-6}, {"spa22", 2e-4}, {"e5m10", 5e-3}})
         for (const char* name : quick(1, {"mirrors", "polygons", "cones", "centre"}))
-            for (const int k : {-5, 4}) {
+            for (const int k : {-5, 4, -12, 12}) {
                 const Scene scene = without_planes(name);
                 const double difference =
                     mean_difference(render_scene(scene, in_format(format)).image,

@@ -5,8 +5,10 @@
 #include <string>
 
 #include "host/error.hpp"
+#include "host/files/whole_file.hpp"
 #include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_reader.hpp"
+#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {
@@ -39,6 +41,50 @@ TEST_CASE("facets without area are left out and counted", "[dialects]") {
     CHECK(passed.told == Told{"t.nff:8: polygon without area, left out (4 in all)"});
     CHECK(passed.scene.polygons.size() == 1);
     CHECK(passed.scene.spheres.size() == 1);
+}
+
+TEST_CASE("an outline without signed area that crosses itself is left out by that name", "[dialects]") {
+    const Passed passed = pass(kView + kSphere + "p 4\n0 0 0\n1 1 0\n1 0 0\n0 1 0\np 4\n0 0 0\n1 0 0\n1 1 0\n1 0 0\n");
+    CHECK(passed.told ==
+          Told{"t.nff:9: polygon that crosses or retraces itself, so that its signed area is 0, left out (2 in all)"});
+    CHECK(passed.scene.polygons.empty());
+}
+
+TEST_CASE("a file of another format is named as such", "[dialects]") {
+    const ScratchFolder folder;
+    const std::string file = folder / "t.nff";
+    struct Row {
+        std::string text, format;
+    };
+    for (const auto& [text, format] :
+         std::vector<Row>{{"# Blender\nmtllib a.mtl\no Cube\nv 1 1 -1\nf 1/1/1 2/2/1 3/3/1\n", "an OBJ"},
+                          {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "an OBJ"},
+                          {"\n# a\r\n\r\nvn 0 0 1\r\n", "an OBJ"},
+                          {"ply\nformat ascii 1.0\nelement vertex 1\nend_header\n0 0 0\n", "a PLY"},
+                          {"ply\r\nformat binary_little_endian 1.0\r\nend_header\r\n\x01\x02", "a PLY"},
+                          {std::string("glTF\2\0\0\0", 8), "a glTF"},
+                          {"{\n  \"asset\": {\"version\": \"2.0\"}, \"scenes\": []}", "a glTF"},
+                          {"{\"kind\": \"raya bench\"}", "a JSON"},
+                          {"[1, 2]", "a JSON"},
+                          {"#include \"colors.inc\"\ncamera { location <0, 0, -5> }\n", "a POV-Ray"},
+                          {"// a scene\nsphere { <0, 0, 0>, 1 }\n", "a POV-Ray"},
+                          {"global_settings { assumed_gamma 1 }", "a POV-Ray"},
+                          {"camera{location 0}", "a POV-Ray"}}) {
+        CAPTURE(text);
+        write_whole_file(file, text);
+        const std::string message = file + ":1: this looks like " + format + " file; raya reads NFF";
+        CHECK_THROWS_WITH(read_nff(file), message);
+        std::vector<NffRemark> remarks;
+        CHECK_THROWS_WITH(read_nff(file, &remarks), message);
+        CHECK(remarks.empty());
+    }
+    for (const std::string& text :
+         {kView, kView + "s 0 0 zero 1\n", std::string("hello world\n"), std::string("# v 1\n")}) {
+        write_whole_file(file, text);
+        CHECK_THROWS_WITH(read_nff(file), !Contains("looks like"));
+    }
+    write_whole_file(file, "#include \"a\"\n" + kView + kSphere);  // a comment in NFF
+    CHECK(read_nff(file).spheres.size() == 1);
 }
 
 TEST_CASE("a checker before a facet that is left out goes with it", "[dialects]") {

@@ -80,8 +80,10 @@ TEST_CASE("refused: numbers", "[nff]") {
                     {"s 0 0 0x10 1", "9: the centre of 's': '0x10' is a number with something after it"},
                     {"s 0 0 1,5 1", "9: the centre of 's': '1,5' is a number with something after it"},
                     {"s 0 0 +-1 1", "9: the centre of 's': '+-1' is not a number"},
-                    {"s 0 0 1.1e9 1", "9: the centre of 's': '1.1e9' is too large to trace in fp32"},
-                    {"s 0 0 0 -2e9", "9: the radius of 's': '-2e9' is too large"}});
+                    {"s 0 0 1.1e30 1", "9: the centre of 's': '1.1e30' is out of range: at most 1e+30 in magnitude"},
+                    {"s 0 0 0 -2e30", "9: the radius of 's': '-2e30' is out of range"},
+                    {"f 1 1 1 1 0 1e30 0 1", "9: Shine of 'f': '1e30' is out of range: at most 1e+09 in magnitude"},
+                    {"b 0 0 1e10", "9: the background colour of 'b': '1e10' is out of range"}});
 }
 
 TEST_CASE("refused: entities that are cut short or followed by something", "[nff]") {
@@ -148,7 +150,7 @@ TEST_CASE("refused: colours and surfaces", "[nff]") {
 
 TEST_CASE("refused: spheres and cones", "[nff]") {
     check_entities({{"s 0 0 0 0", "9: the radius of the sphere is zero"},
-                    {"s 0 0 0 -1e-10", "9: the radius of the sphere is zero"},
+                    {"s 0 0 0 -1e-31", "9: the radius of the sphere is zero"},
                     {"c 0 0 0 0 0 0 1 0", "9: both radii of the cone are zero"},
                     {"c 0 0 0 1 0 0 1 -1", "9: one radius of the cone is negative, the other positive"},
                     {"c 0 0 0 -1 0 0 1 0.5", "9: one radius of the cone is negative"},
@@ -158,19 +160,21 @@ TEST_CASE("refused: spheres and cones", "[nff]") {
 }
 
 TEST_CASE("refused: polygons", "[nff]") {
-    check_entities({{"p 2 0 0 0 1 0 0", "9: the number of vertices of 'p' is 2: must be a whole number from 3"},
-                    {"p -3", "9: the number of vertices of 'p' is -3"},
-                    {"p 3.5", "9: the number of vertices of 'p' is 3.5"},
-                    {"p 1000000000\n0 0 0\n", "9: the file is too short for a polygon of 1000000000 vertices"},
-                    {"pp 1000\n0 0 0 0 0 1\n", "9: the file is too short for a polygon of 1000 vertices"},
-                    {"p 4 0 0 0 1 0 0 1 0 0 0 0 0", "9: the polygon has fewer than three different vertices"},
-                    {"p 3 1 1 1 1 1 1 1 1 1", "9: the polygon has fewer than three different vertices"},
-                    {"p 3 0 0 0 0.1 0.1 0.1 0.3 0.3 0.3", "9: the polygon has no area"},
-                    {"p 4 0 0 0 1 1 0 1 0 0 0 1 0", "9: the polygon has no area"},
-                    {"p 3 0 0 0 1e-10 0 0 0 1e-10 0", "9: the polygon is smaller than 1e-09"},
-                    {"p 4 0 0 0 1 0 0 1 1 0.1 0 1 0", "9: the polygon is not flat: a vertex lies 0.02"},
-                    {"pp 4 0 0 0 0 0 1 1 0 0 0 0 1 1 1 0.1 0 0 1 0 1 0 0 0 1", "9: the polygon is not flat"},
-                    {"pp 3 0 0 0 0 0 1 1 0 0 0 0 0 0 1 0 0 0 1", "9: a normal of the patch is zero"}});
+    check_entities(
+        {{"p 2 0 0 0 1 0 0", "9: the number of vertices of 'p' is 2: must be a whole number from 3"},
+         {"p -3", "9: the number of vertices of 'p' is -3"},
+         {"p 3.5", "9: the number of vertices of 'p' is 3.5"},
+         {"p 4294967299 0 0 0", "9: the number of vertices of 'p' is 4294967299: must be a whole number "},
+         {"p 1000000000\n0 0 0\n", "9: the file is too short for a polygon of 1000000000 vertices"},
+         {"pp 1000\n0 0 0 0 0 1\n", "9: the file is too short for a polygon of 1000 vertices"},
+         {"p 4 0 0 0 1 0 0 1 0 0 0 0 0", "9: the polygon has fewer than three different vertices"},
+         {"p 3 1 1 1 1 1 1 1 1 1", "9: the polygon has fewer than three different vertices"},
+         {"p 3 0 0 0 0.1 0.1 0.1 0.3 0.3 0.3", "9: the polygon has no area"},
+         {"p 4 0 0 0 1 1 0 1 0 0 0 1 0", "9: the polygon crosses or retraces itself, so that its signed area is 0"},
+         {"p 3 0 0 0 1e-31 0 0 0 1e-31 0", "9: the polygon is smaller than 1e-30"},
+         {"p 4 0 0 0 1 0 0 1 1 0.1 0 1 0", "9: the polygon is not flat: a vertex lies 0.02"},
+         {"pp 4 0 0 0 0 0 1 1 0 0 0 0 1 1 1 0.1 0 0 1 0 1 0 0 0 1", "9: the polygon is not flat"},
+         {"pp 3 0 0 0 0 0 1 1 0 0 0 0 0 0 1 0 0 0 1", "9: a normal of the patch is zero"}});
 }
 
 TEST_CASE("refused: raya's extension", "[nff]") {
@@ -182,7 +186,7 @@ TEST_CASE("refused: raya's extension", "[nff]") {
          {"#raya plane 0 0 1\ns 0 0 0 1", "9: the line ends before the distance of '#raya plane'"},
          {"#raya plane 0 0 1 0 0", "9: '0' follows the end of '#raya plane'"},
          {"#raya plane 0 0 0 1", "9: the normal of the plane is zero"},
-         {"#raya plane 0 0 1e-9 10", "9: the plane lies too far from the origin"},
+         {"#raya plane 0 0 1e-30 10", "9: the plane lies too far from the origin"},
          {"s 0 0 0 1 #raya plane 0 0 1 0", "9: '#raya' must be the first word of its line"},
          {kChecker, "9: no plane or polygon follows this '#raya checker'"},
          {kChecker + kSphere, "9: no plane or polygon follows this '#raya checker'"},
