@@ -118,6 +118,12 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
                         "these words in global memory, or choose another device",
                         what, local_bytes, info_.name, info_.local_memory_bytes));
     }
+    const std::size_t most = guarded(what, [&] { return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_); });
+    if (group_size > most) {
+        throw DeviceError(
+            fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
+                        what, info_.name, most, most));
+    }
     submit(what, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
