@@ -17,9 +17,10 @@ class DriverCall {
     const char* before_;
 };
 
-/// From now on a driver that aborts or crashes is named on stderr with what it was doing and with remedies, files in
-/// progress are removed, and the exit code is that of a DeviceError. Crashes elsewhere end the program as ever; so do
-/// all where something else, such as a sanitizer, handles them.
+/// From now on a driver that aborts or crashes, in any thread and by an overflow of its stack too, is named on stderr
+/// with what it was doing and with remedies, files in progress are removed, and the exit code is that of a DeviceError.
+/// Crashes elsewhere end the program by their signal; so do all where something else, such as a sanitizer, handles
+/// them. Threads that are created later get stacks for the largest work-groups.
 void explain_driver_crashes();
 
 /// Of several processes: what stands before a crash's message ("rank 1 on node7: "), and how many seconds this process

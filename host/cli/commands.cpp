@@ -86,14 +86,10 @@ int printed(Ranks& ranks, int code) {
     return code == kExitOk ? kExitUserError : code;
 }
 
-// Of what ends all ranks one speaks: rank 0, or mpirun, which passes it on as SIGTERM.
-// From the start on: MPI's takes a while.
+// Of all ranks the first reports a signal. From the start on: MPI's takes a while.
 void silence_interruptions() {
     const std::optional<Launch> launch = launched();
-    if (!launch || launch->count == 1u) return;
-    end_silently_on(SIGTERM);
-    if (launch->rank == 0) return;
-    for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) end_silently_on(signal);
+    if (launch && launch->rank != 0) end_silently();
 }
 
 // Other commands than these two would do the same in every process.

@@ -1,5 +1,7 @@
 #include "host/files/interruption.hpp"
 
+#include <dlfcn.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <array>
@@ -19,26 +21,40 @@ struct Slot {
 };
 std::array<Slot, 16> slots;
 static_assert(std::atomic<bool>::is_always_lock_free);
-std::array<std::atomic<bool>, 32> silent;  // by signal
+std::atomic<bool> silent{false};
+std::atomic<pid_t> child{0};
+
+using Handler = void (*)(int, siginfo_t*, void*);
+std::array<std::atomic<bool>, 32> kept;          // by signal
+std::array<std::atomic<Handler>, 32> displaced;  // what a library wanted instead of a kept handler
+static_assert(std::atomic<Handler>::is_always_lock_free);
 
 /// Runs in whatever thread the signal finds; calls nothing but what a handler may call.
-extern "C" void remove_and_end(int signal) {
+extern "C" void remove_and_end(int signal, siginfo_t* info, void* context) {
+    static std::atomic<bool> ending{false};
+    if (ending.exchange(true)) return;  // timeout(1), for one, sends a signal twice; the first must not be cut short
     remove_files_in_progress();
+    if (const pid_t running = child.load()) ::kill(running, SIGTERM);
     static constexpr char kMessage[] = "\r\033[Kraya: interrupted\n";
     constexpr std::size_t kClear = 4;  // wipes a progress bar off the line, on a terminal
     const std::size_t skipped = ::isatty(STDERR_FILENO) != 0 ? 0 : kClear;
-    const bool speaks = !silent[static_cast<std::size_t>(signal)].load();
-    if (speaks && ::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) ::_exit(128 + signal);
-    ::raise(signal);  // SA_RESETHAND: what the signal does by itself, so that the caller sees why the program ended
+    pollfd out{STDERR_FILENO, POLLOUT, 0};  // a pipe may be full
+    if (!silent && ::poll(&out, 1, 0) == 1 && out.revents == POLLOUT)
+        if (::write(STDERR_FILENO, kMessage + skipped, sizeof kMessage - 1 - skipped) < 0) silent = true;
+    if (const Handler driver = displaced[static_cast<std::size_t>(signal)]) driver(signal, info, context);
+    std::signal(signal, SIG_DFL);
+    ::raise(signal);  // so that the caller sees why the program ended
 }
 
 void handle(int signal) {
-    struct sigaction before {};
-    if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) return;
     struct sigaction action {};
-    action.sa_handler = remove_and_end;
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
-    ::sigaction(signal, &action, nullptr);
+    if (::sigaction(signal, nullptr, &action) != 0) return;
+    if (action.sa_handler != SIG_IGN) {
+        action.sa_sigaction = remove_and_end;
+        action.sa_flags = SA_NODEFER | SA_SIGINFO;
+        ::sigaction(signal, &action, nullptr);
+    }
+    keep_handler(signal);
 }
 
 }  // namespace
@@ -52,7 +68,11 @@ void end_cleanly_when_interrupted() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) handle(signal);
 }
 
-void end_silently_on(int signal) { silent.at(static_cast<std::size_t>(signal)).store(true); }
+void keep_handler(int signal, bool keep) { kept.at(static_cast<std::size_t>(signal)) = keep; }
+
+void end_when_interrupted(pid_t process) { child = process; }
+
+void end_silently() { silent = true; }
 
 FileInProgress::FileInProgress(const std::filesystem::path& path) {
     // Where the handler runs the working folder is the same: raya never changes it.
@@ -76,3 +96,18 @@ FileInProgress::~FileInProgress() {
 }
 
 }  // namespace raya
+
+// Replaces the C library's in the program and, as the program exports it, in all libraries. LLVM, in PoCL, installs
+// handlers for HUP, INT, TERM, QUIT and all crashes (lib/Support/Unix/Signals.inc), which remove its temporary files
+// and reinstall the handlers before. But after SIGQUIT they just return, and after any handler abort() calls no other.
+extern "C" __attribute__((visibility("default"))) int sigaction(int signal, const struct sigaction* action,
+                                                                struct sigaction* before) noexcept {
+    using namespace raya;
+    static auto* const next = reinterpret_cast<decltype(&::sigaction)>(::dlsym(RTLD_NEXT, "sigaction"));
+    const auto index = static_cast<std::size_t>(signal);
+    if (action == nullptr || index >= kept.size() || !kept[index]) return next(signal, action, before);
+    // A handler that takes the number alone may be called with more: both share their place in the struct.
+    const bool handles = action->sa_handler != SIG_DFL && action->sa_handler != SIG_IGN;
+    if (handles && action->sa_sigaction != remove_and_end) displaced[index] = action->sa_sigaction;
+    return next(signal, nullptr, before);
+}

@@ -12,6 +12,8 @@
 #include <memory>
 #include <system_error>
 
+#include "host/files/interruption.hpp"
+
 namespace raya {
 namespace fs = std::filesystem;
 namespace {
@@ -75,7 +77,9 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const std::str
     pid_t child = 0;
     run.not_started = start(arguments, streams, child);
     if (run.not_started != 0) return run;
+    end_when_interrupted(child);
     run.status = wait_for(child);
+    end_when_interrupted(0);
     run.out = text_of(streams[STDOUT_FILENO].get());
     run.err = text_of(streams[STDERR_FILENO].get());
     return run;

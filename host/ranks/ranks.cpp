@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "host/files/interruption.hpp"
 #include "host/files/say.hpp"
 
 namespace raya {
@@ -134,6 +135,7 @@ int Ranks::fail(const RankFailure& failure) { return end_all(failure.what(), fai
 
 int Ranks::end_all(const std::string& whole, int code) {
     if (!first()) transport_->report_failure(whole, code);
+    end_silently();  // mpirun ends this rank too
     say(fmt::format("raya: {}\n", whole));
     transport_->abort(code);
     return code;

@@ -5,9 +5,12 @@
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third one ends one length of itself further on, or before where the
 //                                             buffer ends there: in the memory of another PE
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third, and all after it, end the program by SIGSEGV
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   by a stack that overflows
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  by those of two other threads at once
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   or with exit code 1
 //   RAYA_FAULT="clFinish 1 slow"              the first, and all after it, take two seconds and a half longer
 //   RAYA_FAULT="clGetDeviceInfo 4100 8"       asked for 0x1004 = CL_DEVICE_MAX_WORK_GROUP_SIZE, the device says 8
+//   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  0x11B0 = CL_KERNEL_WORK_GROUP_SIZE, for every kernel
 //   RAYA_FAULT="new 1000000 0"                the host has no memory for objects of 1,000,000 bytes or more
 // No driver can be made to run out of memory, to lose its device or to forget a copy at a chosen moment.
 #include <CL/cl.h>
@@ -46,12 +49,25 @@ const Fault& wanted() {
     return fault;
 }
 
+/// Frames of 16 KB, without end.
+int overflow(int depth) {
+    volatile char frame[16384];
+    frame[0] = static_cast<char>(depth);
+    return depth == 0 ? 0 : overflow(depth + 1) + frame[0];
+}
+
 /// What the call must return in place of doing its work; CL_SUCCESS: its work.
 cl_int fault_of(const char* call) {
     const Fault& fault = wanted();
     static std::atomic<int> calls{0};
     if (fault.call != call || fault.what == "lost" || fault.what == "astray" || ++calls < fault.at) return CL_SUCCESS;
     if (fault.what == "crash") std::raise(SIGSEGV);
+    if (fault.what == "overflow") std::_Exit(overflow(1));
+    if (fault.what == "overflows") {
+        std::thread one(overflow, 1), other(overflow, 1);
+        one.join();
+        other.join();
+    }
     if (fault.what == "exit") std::_Exit(1);
     if (fault.what == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     return fault.error;
@@ -90,6 +106,14 @@ size_t next_door(cl_mem buffer, size_t offset, size_t size) {
     size_t bytes = 0;
     clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);
     return offset + 2 * size <= bytes ? offset + size : offset >= size ? offset - size : offset;
+}
+
+/// The answer to a query for `what`, if that is to be another.
+void replace_answer(const char* call, cl_uint what, size_t size, void* value) {
+    const Fault& fault = wanted();
+    if (fault.call != call || static_cast<int>(what) != fault.at || value == nullptr) return;
+    const size_t answer = static_cast<size_t>(fault.error);
+    std::memcpy(value, &answer, std::min(size, sizeof answer));
 }
 
 /// In place of a copy: a command that is done in the end, with its times, and that moves a byte to nowhere.
@@ -171,10 +195,15 @@ cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, 
 
 cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* needed) {
     const cl_int error = real<decltype(clGetDeviceInfo)>("clGetDeviceInfo")(device, what, size, value, needed);
-    const Fault& fault = wanted();
-    if (fault.call != "clGetDeviceInfo" || static_cast<int>(what) != fault.at || value == nullptr) return error;
-    const size_t answer = static_cast<size_t>(fault.error);
-    std::memcpy(value, &answer, std::min(size, sizeof answer));
+    replace_answer("clGetDeviceInfo", what, size, value);
+    return error;
+}
+
+cl_int CL_API_CALL clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info what,
+                                            size_t size, void* value, size_t* needed) {
+    const cl_int error =
+        real<decltype(clGetKernelWorkGroupInfo)>("clGetKernelWorkGroupInfo")(kernel, device, what, size, value, needed);
+    replace_answer("clGetKernelWorkGroupInfo", what, size, value);
     return error;
 }
 

@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <regex>
@@ -21,6 +22,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -30,8 +32,9 @@
 namespace raya {
 
 struct RunOutcome {
-    std::string command;  // for messages of a failed test
-    int code = 0;         // exit code; 128 + signal if one ended the program
+    std::string command;        // for messages of a failed test
+    int code = 0;               // exit code; 128 + signal if one ended the program
+    double after_signal_s = 0;  // from the signal to the end
     std::string out, err;
     std::string told() const { return command + "\nexit code " + std::to_string(code) + "\n" + out + "\n" + err; }
 };
@@ -43,7 +46,10 @@ struct Surroundings {
     rlim_t largest_file = 0;   // bytes that a file may grow to, 0: any; a longer one fails as a full disk does
     std::string error_file{};  // what stderr goes to, so that it is not seen in the outcome; empty: to be seen
     int signal = 0;            // sent to the program, unless it has ended before
-    int signal_after_ms = 0;   // after it has begun to handle that signal
+    int signal_after_ms = 0;   // after it has begun to handle that signal, and `signal_when` is true
+    std::function<bool()> signal_when{};
+    int signal_count = 1;    // timeout(1) sends its signal twice
+    std::string out_file{};  // what stdout goes to, as `error_file`
 };
 
 namespace run_program_detail {
@@ -84,11 +90,11 @@ inline std::vector<std::string> environment(const Surroundings& around) {
     return all;
 }
 
-/// Puts `file`, a terminal perhaps, in the place of stderr.
-inline void open_error_file(const std::string& file) {
+/// Makes `file`, a terminal perhaps, that standard stream.
+inline void open_stream(const std::string& file, int stream) {
     if (file.empty()) return;
     const int opened = ::open(file.c_str(), O_WRONLY | O_NOCTTY);
-    if (opened < 0 || ::dup2(opened, STDERR_FILENO) < 0) ::_exit(126);
+    if (opened < 0 || ::dup2(opened, stream) < 0) ::_exit(126);
 }
 
 inline void leave_root() {
@@ -108,7 +114,9 @@ inline void limit_files(rlim_t bytes) {
 /// process's.
 inline bool catches(pid_t child, int signal) {
     const std::string folder = "/proc/" + std::to_string(child);
-    if (std::filesystem::read_symlink(folder + "/exe") == std::filesystem::read_symlink("/proc/self/exe")) return false;
+    std::error_code ended;
+    const auto program = std::filesystem::read_symlink(folder + "/exe", ended);
+    if (ended || program == std::filesystem::read_symlink("/proc/self/exe")) return false;
     std::ifstream status(folder + "/status");
     for (std::string word; status >> word;) {
         if (word != "SigCgt:") continue;
@@ -118,14 +126,21 @@ inline bool catches(pid_t child, int signal) {
     return false;
 }
 
+/// Looks, and does not wait for it.
+inline bool has_ended(pid_t child) {
+    siginfo_t found{};
+    return ::waitid(P_PID, static_cast<id_t>(child), &found, WEXITED | WNOHANG | WNOWAIT) != 0 || found.si_pid != 0;
+}
+
 /// Sends the signal in its time. The child has not been waited for, so its number is still its own.
 inline void send_signal(pid_t child, const Surroundings& around) {
     using namespace std::chrono;
     if (around.signal == 0) return;
-    const auto late = steady_clock::now() + seconds(20);
-    while (!catches(child, around.signal) && steady_clock::now() < late) std::this_thread::sleep_for(milliseconds(5));
+    const auto late = steady_clock::now() + seconds(60);
+    const auto ready = [&] { return catches(child, around.signal) && (!around.signal_when || around.signal_when()); };
+    while (!ready() && !has_ended(child) && steady_clock::now() < late) std::this_thread::sleep_for(milliseconds(5));
     std::this_thread::sleep_for(milliseconds(around.signal_after_ms));
-    ::kill(child, around.signal);
+    for (int sent = 0; sent < around.signal_count; ++sent) ::kill(child, around.signal);
 }
 
 }  // namespace run_program_detail
@@ -148,7 +163,8 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const Surrounding
         ::dup2(::fileno(input.get()), STDIN_FILENO);
         ::dup2(::fileno(out.get()), STDOUT_FILENO);
         ::dup2(::fileno(err.get()), STDERR_FILENO);
-        detail::open_error_file(around.error_file);
+        detail::open_stream(around.out_file, STDOUT_FILENO);
+        detail::open_stream(around.error_file, STDERR_FILENO);
         detail::limit_files(around.largest_file);
         if (around.as_nobody) detail::leave_root();
         ::fexecve(program, argv.data(), envp.data());
@@ -156,8 +172,10 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const Surrounding
     }
     if (program >= 0) ::close(program);
     if (child > 0) detail::send_signal(child, around);
+    const auto signalled = std::chrono::steady_clock::now();
     int status = 0;
     while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+    outcome.after_signal_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - signalled).count();
     outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     outcome.out = detail::contents(out.get());
     outcome.err = detail::contents(err.get());

@@ -99,6 +99,21 @@ TEST_CASE("each signal ends the process as it would by itself", "[interruption]"
     }
 }
 
+TEST_CASE("a library that installs a handler gets it called, and the process ends all the same", "[interruption]") {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+        CAPTURE(signal);
+        const End end = in_a_process([&] {
+            end_cleanly_when_interrupted();
+            struct sigaction action {};
+            action.sa_handler = [](int) { (void)!::write(STDERR_FILENO, "theirs\n", 7); };
+            ::sigaction(signal, &action, nullptr);
+            ::raise(signal);
+        });
+        CHECK(end.said == "raya: interrupted\ntheirs\n");
+        CHECK(WTERMSIG(end.status) == signal);
+    }
+}
+
 TEST_CASE("a signal that the caller ignores stays ignored, as under nohup", "[interruption]") {
     const End end = in_a_process([] {
         std::signal(SIGHUP, SIG_IGN);

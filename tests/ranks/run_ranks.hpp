@@ -97,18 +97,12 @@ inline pid_t start(const Mpi& mpi, std::vector<std::string> words, std::vector<s
     ::_exit(127);
 }
 
-/// Looks, and does not wait for it.
-inline bool has_ended(pid_t child) {
-    siginfo_t told{};
-    return ::waitid(P_PID, static_cast<id_t>(child), &told, WEXITED | WNOHANG | WNOWAIT) != 0 || told.si_pid != 0;
-}
-
 /// Sends the signal when `ranks` of them have started; false where they have not within 30 s.
 inline bool strike(const Mpi& mpi, const std::string& mark, pid_t launcher, std::size_t ranks, const RanksFault& f) {
     const Clock::time_point late = Clock::now() + std::chrono::seconds(30);
     std::vector<RankProcess> there;
     while ((there = rank_processes(mark, mpi.program)).size() < ranks) {
-        if (Clock::now() > late || has_ended(launcher)) return false;
+        if (Clock::now() > late || run_program_detail::has_ended(launcher)) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(f.after_ms));
