@@ -19,6 +19,8 @@ std::vector<std::string> members_in(const std::string& type) {
     return words;
 }
 
+}  // namespace
+
 OptionText option_text(CLI::Option& option) {
     OptionText text;
     for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
@@ -35,6 +37,8 @@ OptionText option_text(CLI::Option& option) {
     if (text.words.empty()) text.words = members_in(type);
     return text;
 }
+
+namespace {
 
 CommandText text_of(const CLI::App& command) {
     CommandText text;

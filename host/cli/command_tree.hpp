@@ -6,6 +6,8 @@
 
 namespace raya {
 
+OptionText option_text(CLI::Option& option);
+
 /// The program with all its commands, but for what help does not show. A word called COMMAND is one of those.
 CommandText command_text(const CLI::App& program);
 

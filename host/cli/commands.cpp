@@ -53,11 +53,9 @@ void open_standard_files() {
 int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     try {
         if (ranks.many()) check_alike(ranks, {argv + 1, argv + argc});
-        program.parse(argc, argv);
+        parse_words(program, {argv + 1, argv + argc});
         return kExitOk;
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() != 0)
-            return ranks.fail(parse_failure_text(program, error, {argv + 1, argv + argc}), kExitUserError);
         return ranks.first() ? program.exit(error) : kExitOk;  // help, version
     } catch (const RankFailure& failure) {
         return ranks.fail(failure);

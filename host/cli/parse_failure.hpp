@@ -1,18 +1,17 @@
-// What is said of a command line that the option parser does not take: one line, in raya's own words.
+// The words of a command line, and what is said of those that the option parser does not take: one line.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace CLI {
 class App;
-class ParseError;
 }  // namespace CLI
 
 namespace raya {
 
-/// `arguments`: the words of the command line, in order.
-std::string parse_failure_text(const CLI::App& program, const CLI::ParseError& error,
-                               const std::vector<std::string>& arguments);
+/// Parses the words behind the program's name and runs the command. What is not taken is a UserError, of one line; help
+/// and version are a CLI::ParseError.
+void parse_words(CLI::App& program, const std::vector<std::string>& arguments);
 
 /// The names of a command's own commands.
 std::vector<std::string> command_names(const CLI::App& command);

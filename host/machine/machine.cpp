@@ -52,8 +52,8 @@ Machine links() {
     return machine;
 }
 
-// [?] The SPA without the memory limit, one PE a column; fp32 and a tree of boxes, as it is there for scenes that no SPA
-// could hold.
+// [?] The SPA without the memory limit, one PE a column; fp32 and a tree of boxes, as it is there for scenes that no
+// SPA could hold.
 Machine grande() {
     Machine machine = spa();
     machine.name = machine.title = "grande";
@@ -115,7 +115,7 @@ const Machine& machine_named(const std::string& name) {
     if (found != all.end()) return *found;
     std::vector<std::string> names;
     for (const Machine& m : all) names.push_back(m.name);
-    throw UserError(fmt::format("no machine '{}': there are {}", name, fmt::join(names, ", ")));
+    throw UserError(fmt::format("--machine {}: no such machine, there are {}", name, fmt::join(names, ", ")));
 }
 
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events() {

@@ -201,7 +201,7 @@ TEST_CASE("info refuses what no machine can be", "[cli]") {
     check_refused(none, {"info", scene, "--machine", "spa", "--nodes", "2x2x2"}, 2,
                   {"--nodes 2x2x2 with --machine spa"});
     check_refused(none, {"info", scene, "--machine", "cap", "--offset", "3"}, 2, {"--offset 3"});
-    check_refused(none, {"info", scene, "--machine", "cray"}, 2, {"no machine 'cray'"});
+    check_refused(none, {"info", scene, "--machine", "cray"}, 2, {"--machine cray: no such machine"});
     check_refused(none, {"info", scene, "--from", "1,2"}, 2, {"--from 1,2"});
     check_refused(none, {"info", scene, "--device", "0"}, 2, {"no option --device"});
     check_refused(none, {"info", none / "no.nff"}, 2, {"no.nff: cannot read the scene"});

@@ -23,7 +23,7 @@ void check_render_options(const std::vector<Row>& rows) {
 }
 
 TEST_CASE("a name that the program does not know is refused with those that it knows", "[cli]") {
-    check_render_options({{{"--machine", "sparc"}, {"'sparc'", "spa, grande"}},
+    check_render_options({{{"--machine", "sparc"}, {"--machine sparc", "spa, grande"}},
                           {{"--mapping", "spiral"}, {"--mapping spiral", "cyclic, cyclic:p, column", "random:seed"}},
                           {{"--fold", "diagonal"}, {"--fold diagonal", "cyclic or block"}},
                           {{"--format", "e4m15"}, {"--format e4m15", "fp32", "X = 5..8"}},
@@ -84,7 +84,7 @@ TEST_CASE("a number that is no whole number is refused", "[cli]") {
 TEST_CASE("words that do not belong there are refused with a hint at the help", "[cli]") {
     check_render_options({{{"--nonsense"}, {"raya: render: no option --nonsense; see raya render --help"}},
                           {{"--siz", "32"}, {"no option --siz (did you mean --size?)"}},
-                          {{"second.nff"}, {"second.nff is one word too many; see raya render --help"}},
+                          {{"second.nff"}, {"unexpected argument 'second.nff'; see raya render --help"}},
                           {{"--size"}, {"--size: value N|WxH missing", "--help"}},
                           {{"--pes", "4", "--pes", "5"}, {"--pes: takes one value, not 2", "--help"}}});
     const ScratchFolder outputs;
