@@ -37,12 +37,16 @@ Words operator+(Words words, const Words& more) {
     return words;
 }
 
+struct Opened : CLI::App {
+    using CLI::App::final_callback_;
+};
+
 /// What the program says of these words; "" if it takes them. Other exceptions than a refusal end the test.
 std::string refusal(const Words& words, bool runs) {
     const std::shared_ptr<CLI::App> program = parser_of_all();
     if (!runs)
         for (CLI::App* at = program.get(); at != nullptr;) {
-            at->callback([] {});
+            at->callback([kept = at->*(&Opened::final_callback_)] {});  // it owns what the options fill
             const auto next = at->get_subcommands([&](const CLI::App* one) {
                 return std::find(words.begin(), words.end(), one->get_name()) != words.end();
             });
