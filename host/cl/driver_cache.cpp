@@ -39,7 +39,7 @@ void provide_driver_cache() {
     fs::permissions(own, fs::perms::owner_all, error);
     if (error || ::access(own.c_str(), W_OK | X_OK) != 0) return;
     ::setenv("POCL_CACHE_DIR", own.c_str(), 1);
-    warn(fmt::format("warning: {} may not be written: PoCL keeps its kernels in {}; POCL_CACHE_DIR names another place",
+    warn(fmt::format("warning: {} is not writable: PoCL keeps its kernels in {}; POCL_CACHE_DIR names another place",
                      usual.string(), own.string()));
 }
 

@@ -22,7 +22,7 @@ std::string log_of(const cl::Program& program, const cl::Device& device) {
 
 // Behind a log without an error.
 constexpr const char* kNoReason =
-    "The log gives no reason. PoCL's has none where its cache is full, damaged or may not be written: name an empty "
+    "The log gives no reason. PoCL's has none where its cache is full, damaged or not writable: name an empty "
     "folder with room in POCL_CACHE_DIR.\n";
 
 std::string name_of(const cl::Device& device) {

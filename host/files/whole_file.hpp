@@ -7,7 +7,7 @@
 namespace raya {
 
 /// Refuses a target that write_whole_file() could not write: a folder, a missing or unwritable folder around it, an
-/// existing file that may not be written. Writes nothing. Throws UserError with file, reason and remedy. For commands
+/// existing file that is not writable. Writes nothing. Throws UserError with file, reason and remedy. For commands
 /// that would rather fail before an hour's work than after it. Where the name is "-" stdout is kept for the file from
 /// now on (standard_streams.hpp).
 void check_writable(const std::filesystem::path& path);

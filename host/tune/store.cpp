@@ -133,7 +133,7 @@ fs::path tuned_place(const DeviceInfo& device) {
     std::error_code error;
     fs::create_directories(*folder, error);
     if (error)
-        throw UserError(fmt::format("{}: cannot make the folder: {}; set XDG_CACHE_HOME to another place",
+        throw UserError(fmt::format("{}: cannot create directory: {}; set XDG_CACHE_HOME to another place",
                                     folder->string(), error.message()));
     fs::path path = *folder / tuned_file_name(device);
     check_writable(path);

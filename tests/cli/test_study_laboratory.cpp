@@ -124,7 +124,7 @@ TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind"
 
 TEST_CASE("a study refuses a folder that it cannot make or write before it renders", "[cli]") {
     const ScratchFolder outputs;
-    check_refused(outputs, {"study", "fig8", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot make the folder"});
+    check_refused(outputs, {"study", "fig8", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot create directory"});
     const ScratchFolder closed;
     ::chmod(closed.path().c_str(), 0555);
     for (const char* name : {"fig8", "all"})

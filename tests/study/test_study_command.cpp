@@ -109,7 +109,7 @@ TEST_CASE("options of a formats study that are out of range are refused before a
 
 TEST_CASE("a folder that cannot be made or written is refused", "[study]") {
     const ScratchFolder outputs;
-    check_refused(outputs, {"study", "formats", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot make the folder"});
+    check_refused(outputs, {"study", "formats", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot create directory"});
     const ScratchFolder closed;
     ::chmod(closed.path().c_str(), 0555);
     check_refused(closed, {"study", "formats", "-o", closed.path()}, 2, {"formats.csv", "not writable"},

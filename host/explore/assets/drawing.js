@@ -37,7 +37,7 @@ const VIEW_WORDS = {
   owners: () => "Hue: the number of the PE that owns the pixel.",
   loads: () =>
     "Red: the pixel's PE has more to do than the mean, blue: less. Full colour at twice the mean, and at nothing.",
-  costs: (f, most) => `The brighter, the more cycles a pixel costs; the dearest takes ${grouped(most)}.`,
+  costs: (f, most) => `The brighter, the more cycles a pixel costs; the most expensive takes ${grouped(most)}.`,
   picture: () => "What the machine has rendered.",
 };
 
