@@ -22,6 +22,7 @@
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/kernels/kernel_options.hpp"
@@ -84,8 +85,8 @@ void finish(const BenchCommand& command, const BenchReport& baseline, BenchRepor
     }
     write_report_and_page({command.report, command.page}, bench_report_text(now));
     if (command.baseline.empty()) return;
-    fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", command.baseline, command.tolerance,
-               result.text);
+    fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", printable(command.baseline),
+               command.tolerance, result.text);
     std::fflush(stdout);
     if (result.failed())
         throw CheckFailure{fmt::format("{}: of {} rows {} slower by more than {} %, {} with another image",
@@ -179,8 +180,8 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     take_samples(rows, command.samples);
     bar.reset();
     fmt::print("{} on {}: {} x {} pixels, {} PEs, {} bounces, {} rays; {} samples of 20 ms or more after a warm-up\n",
-               scene.name, session.device().name, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
-               settings.bounces, rows.front().said.rays, command.samples);
+               printable(scene.name), session.device().name, settings.mapping.width, settings.mapping.height,
+               settings.mapping.pes, settings.bounces, rows.front().said.rays, command.samples);
     print_rows(rows);
     print_tuned(rows);
     if (command.denormals) print_denormals(rows);

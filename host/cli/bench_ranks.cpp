@@ -10,6 +10,7 @@
 
 #include "host/error.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/temporary_folder.hpp"
 #include "host/files/whole_file.hpp"
@@ -275,7 +276,7 @@ void bench_on_ranks(const CLI::App& parsed, const RenderOptions& options, const 
     const std::optional<double> others = load.share();
     bar.reset();
     check_images(rows);
-    fmt::print("{} on {}: {}; {} renders of each row after a warm-up, in turn\n", scene.name, warm.device,
+    fmt::print("{} on {}: {}; {} renders of each row after a warm-up, in turn\n", printable(scene.name), warm.device,
                options.machine, asked.samples);
     print_rows(rows);
     print_others(others);

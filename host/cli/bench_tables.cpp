@@ -6,6 +6,7 @@
 #include <array>
 #include <set>
 
+#include "host/files/say.hpp"
 #include "host/kernels/operation_rates.hpp"
 #include "host/report/table.hpp"
 
@@ -63,7 +64,7 @@ void print_tuned(const std::vector<BenchRow>& rows) {
     std::set<std::string> files;
     for (const BenchRow& row : rows)
         if (row.tuned != "defaults" && row.tuned != "options") files.insert(row.tuned);
-    for (const std::string& file : files) fmt::print("tuned: {}\n", file);
+    for (const std::string& file : files) fmt::print("tuned: {}\n", printable(file));
 }
 
 void print_denormals(const std::vector<BenchRow>& rows) {

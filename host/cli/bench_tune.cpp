@@ -210,7 +210,8 @@ void bench_tune(const RenderOptions& render, const std::vector<std::string>& way
     clear_status();
     print_tunings(tunings);
     if (!report.empty()) write_whole_file(report, t4_text(device, tunings));
-    fmt::print("kept in {}: render, bench and study take it, but for --lanes, --group and --no-tuned\n", file.string());
+    fmt::print("kept in {}: render, bench and study take it, but for --lanes, --group and --no-tuned\n",
+               printable(file.string()));
 }
 
 }  // namespace raya

@@ -17,6 +17,7 @@
 #include "host/explore/explorer.hpp"
 #include "host/explore/figures.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
@@ -111,10 +112,10 @@ void explore(const ExploreCommand& command) {
     if (is_quiet()) return;
     const Load load = figures_of(result.cost(), settings.mapping, settings.machine).load;
     fmt::print("{}: {} x {} pixels, opens with {} on {} PEs: u = {:.3f}, speed-up {:.1f}\n",
-               input_name(command.render.scene), settings.mapping.width, settings.mapping.height,
+               printable(input_name(command.render.scene)), settings.mapping.width, settings.mapping.height,
                mapping_text(settings.mapping), settings.mapping.pes, load.imbalance, load.speedup);
-    fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", output_name(command.page),
-               static_cast<double>(page.size()) / 1e3);
+    fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n",
+               printable(output_name(command.page)), static_cast<double>(page.size()) / 1e3);
 }
 
 }  // namespace

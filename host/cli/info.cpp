@@ -11,6 +11,7 @@
 #include "host/cli/scene_input.hpp"
 #include "host/cli/scene_needs.hpp"
 #include "host/error.hpp"
+#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/scene/scene_box.hpp"
 #include "host/version.hpp"
@@ -80,7 +81,7 @@ void info(const CLI::App& parsed, const InfoCommand& command) {
     report.skipped = input.remarks;
     report.warnings = input.warnings.texts();
     report.scene = input.scene;
-    fmt::print("{}", command.json ? to_json(report).dump(2) + "\n" : human_summary(report));
+    fmt::print("{}", command.json ? to_json(report).dump(2) + "\n" : printable(human_summary(report)));
 }
 
 }  // namespace

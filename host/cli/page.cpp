@@ -13,6 +13,7 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"
 #include "host/error.hpp"
+#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
@@ -68,7 +69,7 @@ void make_page(const PageCommand& command) {
     const std::string page = page_of_report(json_text(command.report, source_of(name), Pipes::kRead), name);
     write_whole_file(command.page, page);
     if (!is_quiet())
-        fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", command.page,
+        fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n", printable(command.page),
                    static_cast<double>(page.size()) / 1e3);
 }
 
@@ -109,7 +110,7 @@ void add_page_command(CLI::App& program) {
         ->required()
         ->type_name("REPORT.json");
     add_value(*command, "-o,--output", options->page,
-              "Page to write: one file for a browser, below 1 MB, that needs no network and no scripts")
+              "Page to write: one file for a browser, below 1 MB, that needs no network")
         ->required()
         ->type_name("FILE.html");
     command->callback([options] { make_page(*options); });

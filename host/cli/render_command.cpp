@@ -9,6 +9,7 @@
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
+#include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/image/plain_png.hpp"
 #include "host/image/preview.hpp"
@@ -143,7 +144,7 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 
 void write_report(const RenderCommand& command, const RenderReport& report) {
     if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report).dump(2) + "\n");
-    if (!is_quiet() && command.summary) fmt::print("{}", human_summary(report));
+    if (!is_quiet() && command.summary) fmt::print("{}", printable(human_summary(report)));
     if (!command.profile) return;
     const auto& measured = report.measured;
     fmt::print("\n{}\n{}", profile_table(measured.build_s, measured.builds, measured.commands),

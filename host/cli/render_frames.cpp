@@ -60,7 +60,7 @@ void tell(const RenderCommand& one, const FrameEntry& frame, bool recorded) {
     if (is_quiet()) return;
     clear_status();
     fmt::print("frame {:4}  u {:.3f}  speed-up {:7.1f}  {}  {}{}\n", frame.number, frame.imbalance, frame.speed_up,
-               frame.pixels, one.image, recorded ? ", as recorded" : "");
+               frame.pixels, printable(one.image), recorded ? ", as recorded" : "");
     std::fflush(stdout);  // how far it has come shows in a log too
 }
 
@@ -80,7 +80,7 @@ struct Sums {
 void tell(const Sums& sums, const std::string& record) {
     if (is_quiet()) return;
     fmt::print("{} frames, {} rendered, {} as recorded in {}; u {:.3f} to {:.3f}, {:.3f} in the mean\n", sums.frames,
-               sums.rendered, sums.frames - sums.rendered, record, sums.least, sums.most,
+               sums.rendered, sums.frames - sums.rendered, printable(record), sums.least, sums.most,
                sums.sum / static_cast<double>(sums.frames));
 }
 

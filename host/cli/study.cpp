@@ -16,6 +16,7 @@
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/progress.hpp"
+#include "host/files/say.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
@@ -87,7 +88,7 @@ void study_formats(const FormatsCommand& command) {
     write_whole_file(folder / "formats.csv", formats_csv(study));
     write_whole_file(folder / "formats.json", formats_json(study).dump(2) + "\n");
     write_whole_file(folder / "formats.md", formats_markdown(study));
-    if (!is_quiet()) fmt::print("{}", text_table(formats_overview_cells(study)));
+    if (!is_quiet()) fmt::print("{}", printable(text_table(formats_overview_cells(study))));
 }
 
 void add_timing_options(CLI::App& command, FormatsCommand& options) {
@@ -150,9 +151,7 @@ StudyFolder::StudyFolder(const fs::path& folder, const std::vector<std::string>&
     for (fs::path missing = folder; !missing.empty() && !fs::exists(missing, error); missing = missing.parent_path())
         made_.push_back(missing);
     fs::create_directories(folder, error);
-    if (error)
-        throw UserError(
-            fmt::format("-o {}: cannot make the folder: {}; name another one", folder.string(), error.message()));
+    if (error) throw UserError(fmt::format("-o {}: cannot create directory: {}", folder.string(), error.message()));
     for (const std::string& file : files) check_writable(folder / file);
 }
 

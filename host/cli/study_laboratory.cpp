@@ -82,7 +82,7 @@ void print_page(const StudyPage& page, const PlotOutcome& plots, const fs::path&
     }
     for (const std::string& finding : page.findings) fmt::print("  {}\n", finding);
     if (!plots.drawn) fmt::print("  no plots: {}\n", plots.reason);
-    fmt::print("  {}\n", (folder / (page.name + ".md")).string());
+    fmt::print("  {}\n", printable((folder / (page.name + ".md")).string()));
 }
 
 // What makes the page of one study, wherever it is to be written.
@@ -153,7 +153,7 @@ void run_studies(const LaboratoryCommand& command, std::span<const Study> asked)
     }
     write_document(command.folder, pages, plots);
     if (wanted.size() > 1) write_index(command.folder, pages);
-    if (!is_quiet()) fmt::print("{}\n", (fs::path(command.folder) / "index.html").string());
+    if (!is_quiet()) fmt::print("{}\n", printable((fs::path(command.folder) / "index.html").string()));
 }
 
 void add_study(CLI::App& parent, const std::string& name, const std::string& summary, std::span<const Study> wanted) {

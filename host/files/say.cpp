@@ -1,5 +1,7 @@
 #include "host/files/say.hpp"
 
+#include <fmt/core.h>
+
 #include <cstdio>
 #include <mutex>
 #include <string>
@@ -17,15 +19,29 @@ void speak(const std::string& text) {
 
 }  // namespace
 
+std::string printable(std::string_view text) {
+    std::string all;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const auto c = static_cast<unsigned char>(text[at]);
+        // UTF-8 has U+0080..U+009F, which some terminals obey too, as C2 80..C2 9F.
+        const bool obeyed = c == 0xC2 && at + 1 < text.size() && static_cast<unsigned char>(text[at + 1]) < 0xA0;
+        if ((c < ' ' && c != '\n' && c != '\t') || c == 0x7F || obeyed)
+            all += fmt::format("\\x{:02x}", obeyed ? static_cast<unsigned char>(text[++at]) : c);
+        else
+            all += text[at];
+    }
+    return all;
+}
+
 void say(std::string_view text) {
     const std::lock_guard lock(speaking);
-    speak((status_shown ? "\r\033[K" : "") + std::string(text));
+    speak((status_shown ? "\r\033[K" : "") + printable(text));
     status_shown = false;
 }
 
 void show_status(std::string_view line) {
     const std::lock_guard lock(speaking);
-    speak("\r\033[K" + std::string(line));
+    speak("\r\033[K" + printable(line));
     status_shown = true;
 }
 

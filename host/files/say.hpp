@@ -1,8 +1,13 @@
 // What is said to a person on stderr: where nobody listens, because it is closed or full, it is lost and nothing else.
 #pragma once
+#include <string>
 #include <string_view>
 
 namespace raya {
+
+/// `text` with "\x1b" for each control character but \n and \t, so that a file's name cannot steer the terminal. For
+/// stdout; what is said on stderr passes through it.
+std::string printable(std::string_view text);
 
 /// Says `text`, whole lines, in place of a status line that is shown.
 void say(std::string_view text);

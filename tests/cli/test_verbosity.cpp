@@ -93,6 +93,36 @@ TEST_CASE("-q leaves warnings, -qq leaves them out, and neither an error", "[cli
     CHECK_THAT(refused.err, Catch::Contains("flat.nff"));
 }
 
+TEST_CASE("control characters of file names do not reach the terminal", "[cli][verbosity]") {
+    const ScratchFolder folder;
+    const std::string odd = "a\x1b[31m\a\xc2\x9b-\xc3\xa9", shown = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // and e acute
+    const std::string scene = folder / (odd + ".nff"), report = folder / (odd + ".json");
+    std::filesystem::copy_file(scene_to_be_warned_of(folder), scene);
+    const Words size = {"--size", "16", "--pes", "4", "--lanes", "4"};
+    const auto with_size = [&](Words words) {
+        words.insert(words.end(), size.begin(), size.end());
+        return words;
+    };
+    std::vector<Words> runs = {
+        {"info", scene, "-v"},
+        with_size({"render", scene, "-v", "-o", folder / (odd + ".ppm"), "--report", report}),
+        with_size({"render", scene, "--frames", "1:2", "--turn", "9", "-o", folder / (odd + ".ppm")}),
+        {"page", report, "-o", folder / (odd + ".html")},
+        {"explore", scene, "--size", "16", "-o", folder / (odd + ".html")},
+        {"info", folder / (odd + "missing.nff")},
+        {"info", scene, "--machine", odd},
+        {"info", scene, odd},
+        {"render", scene, "-o", folder / ("missing" + odd) / "x.ppm"},
+        {odd}};
+    for (const Words& words : runs) {
+        const RunOutcome run = run_raya(words);
+        INFO(run.told());
+        CHECK((run.code == 0 || run.code == 2));
+        CHECK_THAT(run.out + run.err, Catch::Contains(shown));
+        for (const char* control : {"\x1b", "\a", "\xc2\x9b"}) CHECK_FALSE(contains(run.out + run.err, control));
+    }
+}
+
 TEST_CASE("-q with -v is refused, in either order", "[cli][verbosity]") {
     const ScratchFolder outputs;
     for (const Words& both : {Words{"-q", "-v"}, Words{"--verbose", "--quiet"}, Words{"-vq"}})
