@@ -7,6 +7,7 @@
 #include "host/accel/grid.hpp"
 #include "host/embedded.hpp"
 #include "host/kernels/kernels.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/split_mix.hpp"
 
@@ -88,7 +89,7 @@ Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector
 }
 
 std::string HitBuild::name() const {
-    return fmt::format("{}{}, {} lane{}", format_name(format), filter ? " filtered" : "", lanes, lanes == 1 ? "" : "s");
+    return fmt::format("{}{}, {}", format_name(format), filter ? " filtered" : "", counted(lanes, "lane"));
 }
 
 HitRunner::HitRunner(Session& session, const HitBuild& build)

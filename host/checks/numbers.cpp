@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/kernels/kernels.hpp"
+#include "host/machine/unit_text.hpp"
 
 namespace raya {
 namespace {
@@ -69,8 +70,8 @@ void NumberRows::pad() {
 }
 
 std::string NumberBuild::name() const {
-    return fmt::format("{}, {} lane{}{}{}", format_name(format), lanes, lanes == 1 ? "" : "s",
-                       trusted ? "" : ", division refined", optimised ? "" : ", -cl-opt-disable");
+    return fmt::format("{}, {}{}{}", format_name(format), counted(lanes, "lane"), trusted ? "" : ", division refined",
+                       optimised ? "" : ", -cl-opt-disable");
 }
 
 NumberRunner::NumberRunner(Session& session, const NumberBuild& build)

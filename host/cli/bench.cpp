@@ -26,6 +26,7 @@
 #include "host/files/standard_streams.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/kernels/kernel_options.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/report/bench_compare.hpp"
 #include "host/report/render_report.hpp"
 
@@ -89,10 +90,10 @@ void finish(const BenchCommand& command, const BenchReport& baseline, BenchRepor
                command.tolerance, result.text);
     std::fflush(stdout);
     if (result.failed())
-        throw CheckFailure{fmt::format("{}: of {} rows {} slower by more than {} %, {} with another image",
-                                       command.baseline, result.compared, result.slower, command.tolerance,
+        throw CheckFailure{fmt::format("{}: of {} {} slower by more than {} %, {} with another image", command.baseline,
+                                       counted(result.compared, "row"), result.slower, command.tolerance,
                                        result.other_images)};
-    fmt::print("{} rows compared, none slower by more than {} %, the same images\n", result.compared,
+    fmt::print("{} compared, none slower by more than {} %, the same images\n", counted(result.compared, "row"),
                command.tolerance);
 }
 
@@ -179,9 +180,10 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     bar->stage("taking samples");
     take_samples(rows, command.samples);
     bar.reset();
-    fmt::print("{} on {}: {} x {} pixels, {} PEs, {} bounces, {} rays; {} samples of 20 ms or more after a warm-up\n",
-               printable(scene.name), session.device().name, settings.mapping.width, settings.mapping.height,
-               settings.mapping.pes, settings.bounces, rows.front().said.rays, command.samples);
+    fmt::print("{} on {}: {} x {} pixels, {}, {}, {}; {} of 20 ms or more after a warm-up\n", printable(scene.name),
+               session.device().name, settings.mapping.width, settings.mapping.height,
+               counted(settings.mapping.pes, "PE"), counted(settings.bounces, "bounce"),
+               counted(rows.front().said.rays, "ray"), counted(command.samples, "sample"));
     print_rows(rows);
     print_tuned(rows);
     if (command.denormals) print_denormals(rows);

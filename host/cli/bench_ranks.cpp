@@ -14,6 +14,7 @@
 #include "host/files/standard_streams.hpp"
 #include "host/files/temporary_folder.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/report/table.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/nff_writer.hpp"
@@ -276,8 +277,8 @@ void bench_on_ranks(const CLI::App& parsed, const RenderOptions& options, const 
     const std::optional<double> others = load.share();
     bar.reset();
     check_images(rows);
-    fmt::print("{} on {}: {}; {} renders of each row after a warm-up, in turn\n", printable(scene.name), warm.device,
-               options.machine, asked.samples);
+    fmt::print("{} on {}: {}; {} of each row after a warm-up, in turn\n", printable(scene.name), warm.device,
+               options.machine, counted(asked.samples, "render"));
     print_rows(rows);
     print_others(others);
     if (!asked.report.empty())

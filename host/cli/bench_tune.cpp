@@ -17,6 +17,7 @@
 #include "host/files/utc_time.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/report/table.hpp"
 #include "host/tune/store.hpp"
 #include "host/tune/t4_report.hpp"
@@ -191,8 +192,8 @@ void bench_tune(const RenderOptions& render, const std::vector<std::string>& way
     const std::vector<Workload> workloads = workloads_of(render, ways);
     const DeviceInfo device = device_info(choose_device(render.device));
     std::filesystem::path file = tuned_place(device);
-    fmt::print("tuning {} ({}, driver {}): {} workloads, {:.0f} s\n", device.name, device.platform, device.driver,
-               workloads.size(), tune.seconds);
+    fmt::print("tuning {} ({}, driver {}): {}, {:.0f} s\n", device.name, device.platform, device.driver,
+               counted(workloads.size(), "workload"), tune.seconds);
     std::fflush(stdout);
     TuneSettings settings{
         .arguments = trial_arguments(render), .limit_s = tune.candidate_seconds, .exhaustive = tune.exhaustive};

@@ -21,6 +21,7 @@
 #include "host/files/standard_streams.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/version.hpp"
@@ -111,9 +112,9 @@ void explore(const ExploreCommand& command) {
     bar.reset();
     if (is_quiet()) return;
     const Load load = figures_of(result.cost(), settings.mapping, settings.machine).load;
-    fmt::print("{}: {} x {} pixels, opens with {} on {} PEs: u = {:.3f}, speed-up {:.1f}\n",
+    fmt::print("{}: {} x {} pixels, opens with {} on {}: u = {:.3f}, speed-up {:.1f}\n",
                printable(input_name(command.render.scene)), settings.mapping.width, settings.mapping.height,
-               mapping_text(settings.mapping), settings.mapping.pes, load.imbalance, load.speedup);
+               mapping_text(settings.mapping), counted(settings.mapping.pes, "PE"), load.imbalance, load.speedup);
     fmt::print("page    {} ({:.0f} KB); open it in a browser, it needs no network\n",
                printable(output_name(command.page)), static_cast<double>(page.size()) / 1e3);
 }

@@ -10,6 +10,7 @@
 #include "host/cli/camera_path.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/scene/turn.hpp"
 
 namespace raya {
@@ -35,8 +36,8 @@ std::vector<Frame> frames_on_path(const FrameOptions& o, const View& view) {
     FrameRange range{1, static_cast<std::uint32_t>(cameras.size())};
     if (!o.frames.empty()) range = parse_frames(o.frames);
     if (range.first < 1 || range.last > cameras.size())
-        throw UserError(fmt::format("--frames {}: {} has {} cameras, frames 1 to {}", o.frames, o.camera_path,
-                                    cameras.size(), cameras.size()));
+        throw UserError(fmt::format("--frames {}: {} has {}, frames 1 to {}", o.frames, o.camera_path,
+                                    counted(cameras.size(), "camera"), cameras.size()));
     std::vector<Frame> frames;
     for (std::uint32_t n = range.first; n <= range.last; ++n) frames.push_back({n, cameras[n - 1]});
     return frames;

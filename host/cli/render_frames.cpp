@@ -13,6 +13,7 @@
 #include "host/files/bytes_hash.hpp"
 #include "host/files/say.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/scene/nff_writer.hpp"
 
 namespace raya {
@@ -79,9 +80,9 @@ struct Sums {
 
 void tell(const Sums& sums, const std::string& record) {
     if (is_quiet()) return;
-    fmt::print("{} frames, {} rendered, {} as recorded in {}; u {:.3f} to {:.3f}, {:.3f} in the mean\n", sums.frames,
-               sums.rendered, sums.frames - sums.rendered, printable(record), sums.least, sums.most,
-               sums.sum / static_cast<double>(sums.frames));
+    fmt::print("{}, {} rendered, {} as recorded in {}; u {:.3f} to {:.3f}, {:.3f} in the mean\n",
+               counted(sums.frames, "frame"), sums.rendered, sums.frames - sums.rendered, printable(record), sums.least,
+               sums.most, sums.sum / static_cast<double>(sums.frames));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "host/cl/device.hpp"
 #include "host/cli/render_command.hpp"
+#include "host/machine/unit_text.hpp"
 
 namespace raya {
 
@@ -14,7 +15,7 @@ void RenderProgress::stage(const std::string& what) {
 void RenderProgress::begin_images(std::size_t count) {
     images_ = count;
     done_ = 0;
-    if (bar_) bar_->stage(fmt::format("{} frames", count));
+    if (bar_) bar_->stage(counted(count, "frame"));
 }
 
 void RenderProgress::next_image() {

@@ -8,6 +8,7 @@
 #include "host/error.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/verbosity.hpp"
+#include "host/machine/unit_text.hpp"
 
 namespace raya {
 
@@ -38,8 +39,8 @@ SceneInput read_scene(const std::string& file, bool strict) {
     }
     warn_of_remarks();
     tell(kVerbose,
-         fmt::format("{}: {} objects, {} lights, {} x {} pixels", input_name(file), input.scene.object_count(),
-                     input.scene.lights.size(), input.scene.view.width, input.scene.view.height));
+         fmt::format("{}: {}, {}, {} x {} pixels", input_name(file), counted(input.scene.object_count(), "object"),
+                     counted(input.scene.lights.size(), "light"), input.scene.view.width, input.scene.view.height));
     return input;
 }
 

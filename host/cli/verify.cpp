@@ -16,6 +16,7 @@
 #include "host/files/say.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/verify/worker.hpp"
 #include "host/version.hpp"
@@ -49,8 +50,9 @@ struct VerifyCommand {
 
 // "57 checks passed, 0 failed, 2 skipped in 12.3 s"
 std::string closing_text(const std::vector<Check>& checks, double seconds) {
-    return fmt::format("{} checks passed, {} failed, {} skipped in {:.1f} s", count_of(checks, Outcome::kPass),
-                       count_of(checks, Outcome::kFail), count_of(checks, Outcome::kSkip), seconds);
+    return fmt::format("{} passed, {} failed, {} skipped in {:.1f} s",
+                       counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
+                       count_of(checks, Outcome::kSkip), seconds);
 }
 
 DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
@@ -112,7 +114,7 @@ void print_overall(const std::vector<DeviceChecks>& all) {
         checks.insert(checks.end(), one.checks.begin(), one.checks.end());
         seconds += one.seconds;
     }
-    fmt::print("{} devices: {}\n", all.size(), closing_text(checks, seconds));
+    fmt::print("{}: {}\n", counted(all.size(), "device"), closing_text(checks, seconds));
 }
 
 void run_verify(const VerifyCommand& command) {

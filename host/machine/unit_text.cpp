@@ -11,6 +11,10 @@ std::string tenths_text(std::uint64_t tenths) { return fmt::format("{}.{} KB", t
 
 }  // namespace
 
+std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many.empty() ? one + 's' : many);
+}
+
 std::string needed_text(std::uint64_t bytes) {
     return bytes < kKb ? fmt::format("{} bytes", bytes) : tenths_text((10 * bytes + kKb - 1) / kKb);
 }

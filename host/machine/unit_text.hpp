@@ -5,6 +5,9 @@
 
 namespace raya {
 
+/// "1 frame", "2 frames"; `many` where an s does not make the plural.
+std::string counted(std::uint64_t count, const std::string& one, const std::string& many = "");
+
 /// Below 1 KB in bytes, else in KB with a decimal where they are no whole ones: what is needed rounded up, what there
 /// is rounded down, so that what does not fit never reads as if it did.
 std::string needed_text(std::uint64_t bytes);

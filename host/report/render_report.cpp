@@ -217,10 +217,12 @@ std::string antialias_lines(const RenderReport& r) {
         for (const auto& [phase, load] : r.loads) text += load_line("  " + phase.substr(0, 5), load);
     const Communication& c = r.communication;
     if (a.exchange == "bus")
-        return text + fmt::format("bus     {} transfers between PEs, {} words\n", c.transfers, c.transfer_words);
+        return text +
+               fmt::format("bus     {} between PEs, {} words\n", counted(c.transfers, "transfer"), c.transfer_words);
     if (a.exchange == "bus-broadcast")
-        return text + fmt::format("bus     {} broadcasts by PEs, {} words\n", c.pe_broadcasts, c.pe_broadcast_words);
-    return text + fmt::format("ring    {} rotations, {} words\n", c.rotations, c.rotation_words);
+        return text + fmt::format("bus     {} by PEs, {} words\n", counted(c.pe_broadcasts, "broadcast"),
+                                  c.pe_broadcast_words);
+    return text + fmt::format("ring    {}, {} words\n", counted(c.rotations, "rotation"), c.rotation_words);
 }
 
 std::string model_line(const RenderReport& r) {
@@ -234,7 +236,7 @@ std::string model_line(const RenderReport& r) {
 // Machine and what lies where.
 std::string machine_text(const RenderReport& r) {
     if (r.torus) return torus_machine_text(*r.torus);
-    return fmt::format("{} PEs, {} mapping{}", r.machine.pes, r.machine.mapping,
+    return fmt::format("{}, {} mapping{}", counted(r.machine.pes, "PE"), r.machine.mapping,
                        r.machine.offset ? fmt::format(", offset {}", *r.machine.offset) : "");
 }
 
@@ -246,10 +248,11 @@ std::string accel_line(const RenderReport& r) {
     const double tests = static_cast<double>(test_count(e)) / rays, steps = static_cast<double>(e[RAYA_STEPS]) / rays;
     const std::string apart = a.apart ? fmt::format(", {} held apart", a.apart) : "";
     if (a.kind == AccelKind::kBvh)
-        return fmt::format("tree    {} nodes, {} leaves, depth {}{}; {:.1f} tests and {:.1f} nodes a ray\n", a.nodes,
-                           a.leaves, a.depth, apart, tests, steps);
-    return fmt::format("grid    {}x{}x{} voxels, {} copies of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
-                       a.divisions[0], a.divisions[1], a.divisions[2], a.copies, apart, tests, steps);
+        return fmt::format("tree    {}, {}, depth {}{}; {:.1f} tests and {:.1f} nodes a ray\n",
+                           counted(a.nodes, "node"), counted(a.leaves, "leaf", "leaves"), a.depth, apart, tests, steps);
+    return fmt::format("grid    {}x{}x{} voxels, {} of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
+                       a.divisions[0], a.divisions[1], a.divisions[2], counted(a.copies, "copy", "copies"), apart,
+                       tests, steps);
 }
 
 std::string scale_line(const RenderReport& r) {
@@ -276,9 +279,8 @@ std::string ranks_line(const RenderReport& r) {
         bytes += rank.at("bytes_sent").whole();
         hosts.insert(rank.at("host").text());
     }
-    return fmt::format("ranks   {} on {} host{}; {} messages, {} sent; one waited {:.3f} s for others\n",
-                       r.ranks.size(), hosts.size(), hosts.size() == 1 ? "" : "s", messages, needed_text(bytes),
-                       waiting);
+    return fmt::format("ranks   {} on {}; {}, {} sent; one waited {:.3f} s for others\n", r.ranks.size(),
+                       counted(hosts.size(), "host"), counted(messages, "message"), needed_text(bytes), waiting);
 }
 
 }  // namespace
@@ -287,16 +289,16 @@ std::string human_summary(const RenderReport& r) {
     const EventCounts& e = r.events;
     const std::uint64_t rays = ray_count(e);
     std::string text =
-        fmt::format("{}: {} x {} pixels on {} ({}), {}, {} bounces\n", r.scene, r.image.width, r.image.height,
-                    r.machine.name, machine_text(r), r.machine.format, r.machine.bounces);
+        fmt::format("{}: {} x {} pixels on {} ({}), {}, {}\n", r.scene, r.image.width, r.image.height, r.machine.name,
+                    machine_text(r), r.machine.format, counted(r.machine.bounces, "bounce"));
     text += fmt::format("rays    {} = {} primary + {} reflected + {} refracted + {} shadow\n", rays, e[RAYA_PRIMARY],
                         e[RAYA_REFLECTED], e[RAYA_REFRACTED], e[RAYA_SHADOW]);
     text += load_line("load", r.load, r.requests ? ", simulated" : "");
     text += r.torus ? torus_lines(*r.torus) : antialias_lines(r) + model_line(r);
     text += accel_line(r) + scale_line(r) + memory_line(r);
-    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({} lanes)\n", r.measured.build_s,
+    text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({})\n", r.measured.build_s,
                         r.measured.render_s, rate_text(static_cast<double>(rays) / r.measured.render_s), r.device.name,
-                        r.device.lanes);
+                        counted(r.device.lanes, "lane"));
     const bool by_file = r.device.tuned != "defaults" && r.device.tuned != "options";
     if (by_file && !r.device.tuned.empty()) text += fmt::format("tuned   {}\n", r.device.tuned);
     text += ranks_line(r);

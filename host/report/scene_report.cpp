@@ -80,10 +80,6 @@ Json remark_json(const NffRemark& remark) {
     return {{"what", remark.what}, {"count", remark.count}, {"line", remark.line}};
 }
 
-std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 std::string objects_text(const Scene& s) {
     std::vector<std::string> kinds;
     const auto add = [&](std::uint64_t count, const std::string& one, const std::string& many) {
@@ -95,9 +91,9 @@ std::string objects_text(const Scene& s) {
     add(s.polygons.size() - patches, "polygon", "polygons");
     add(patches, "patch", "patches");
     add(s.cones.size(), "cone", "cones");
-    std::string text = fmt::format("{}: {}", counted(s.object_count(), "object", "objects"), fmt::join(kinds, ", "));
+    std::string text = fmt::format("{}: {}", counted(s.object_count(), "object"), fmt::join(kinds, ", "));
     if (!s.polygons.empty()) text += fmt::format(" ({} vertices)", vertices_of(s));
-    text += "; " + counted(s.surfaces.size(), "surface", "surfaces");
+    text += "; " + counted(s.surfaces.size(), "surface");
     if (checkers_of(s) > 0) text += fmt::format(", {} with a checker", checkers_of(s));
     return text;
 }

@@ -91,12 +91,14 @@ std::string torus_lines(const TorusReport& t) {
     std::string kinds;
     for (const Kind& kind : kKinds)
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : " + ", t.made[kind.number], kind.name);
-    std::string text = fmt::format("packets {} = {}; {} supersteps\n", made, kinds, t.supersteps);
-    text += fmt::format("charged {} returns of {}, {} words a ray and {} a return; {} primary rays thrown away\n",
-                        t.returns, returns_name(t.packets), t.packets.ray_words, t.packets.return_words(), t.discarded);
-    text += fmt::format("links   {} messages over {} links, {} in all; {} over one on average, {} over the busiest\n",
-                        t.hops, t.link.count, data_text(static_cast<double>(t.link.total_bytes)),
-                        data_text(t.link.mean_bytes()), data_text(static_cast<double>(t.link.max_bytes)));
+    std::string text = fmt::format("packets {} = {}; {}\n", made, kinds, counted(t.supersteps, "superstep"));
+    text += fmt::format("charged {} of {}, {} words a ray and {} a return; {} primary rays thrown away\n",
+                        counted(t.returns, "return"), returns_name(t.packets), t.packets.ray_words,
+                        t.packets.return_words(), t.discarded);
+    text += fmt::format("links   {} over {}, {} in all; {} over one on average, {} over the busiest\n",
+                        counted(t.hops, "message"), counted(t.link.count, "link"),
+                        data_text(static_cast<double>(t.link.total_bytes)), data_text(t.link.mean_bytes()),
+                        data_text(static_cast<double>(t.link.max_bytes)));
     const TorusTime& m = t.modelled;
     text += fmt::format(
         "model   {} if nothing waits (processors {}: compute {}, messages {}; links {}), {} step by step (modelled "
@@ -113,7 +115,8 @@ std::string torus_lines(const TorusReport& t) {
 }
 
 std::string torus_memory_text(const TorusReport& t) {
-    return fmt::format("; queues of {} packets, at most {} used; {} copies of objects", t.queue, t.queue_max, t.copies);
+    return fmt::format("; queues of {}, at most {} used; {} of objects", counted(t.queue, "packet"), t.queue_max,
+                       counted(t.copies, "copy", "copies"));
 }
 
 }  // namespace raya

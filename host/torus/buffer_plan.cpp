@@ -57,13 +57,13 @@ std::string node_text(const NodeMemories& memories, std::uint32_t number) {
                 .objects;
         objects += voxel.spheres + voxel.polygons + voxel.cones;
     }
-    std::string voxels = fmt::format("{} voxels", node.voxels);
+    std::string voxels = counted(node.voxels, "voxel");
     if (node.voxels == 1) {
         const std::uint32_t voxel = raya_voxel_of_node(node.torus, node.grid, number, 0);
         const raya_place at = raya_place_of(voxel, node.grid.divisions[0], node.grid.divisions[1]);
         voxels = fmt::format("voxel {}, {}, {}", at.at[0], at.at[1], at.at[2]);
     }
-    return fmt::format("node {} ({} with {} object{})", number, voxels, objects, objects == 1 ? "" : "s");
+    return fmt::format("node {} ({} with {})", number, voxels, counted(objects, "object"));
 }
 
 // Twice as many nodes along the shortest side, the first of equals.

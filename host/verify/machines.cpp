@@ -8,6 +8,7 @@
 #include <array>
 
 #include "host/checks/transfers.hpp"
+#include "host/machine/unit_text.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/torus/topology.hpp"
 #include "host/verify/verify.hpp"
@@ -51,7 +52,7 @@ void verify_kernels(Verification& v) {
               [&](CheckRunner& runner) { return check_owners(runner, kind, cases); });
     check("ways through the torus", 1, [&](CheckRunner& runner) { return check_ways(runner, cases); });
     for (const std::uint32_t group : v.full() ? std::vector{1u, 2u, 8u, 32u, 64u} : std::vector{1u, 32u})
-        check(fmt::format("local memory and barriers, {} work-item{}", group, group == 1 ? "" : "s"), group,
+        check("local memory and barriers, " + counted(group, "work-item"), group,
               [&](CheckRunner& runner) { return check_local_memory(runner, group); });
 }
 

@@ -67,7 +67,7 @@ TEST_CASE("bench --report writes its rows, --compare holds a later run against t
     CHECK(second.code == 0);
     CHECK(second.err.empty());
     CHECK_THAT(second.out,
-               Catch::Contains("faster") && Catch::Contains("1 rows compared, none slower by more than 10 %"));
+               Catch::Contains("faster") && Catch::Contains("1 row compared, none slower by more than 10 %"));
     // Against a row a thousand times faster it must be.
     const RunOutcome third = run_raya(small_bench(
         {"--compare", changed(folder, "fast.json", 1e3), "--tolerance", "50", "--report", folder / "now.json"}));
@@ -75,7 +75,7 @@ TEST_CASE("bench --report writes its rows, --compare holds a later run against t
     CHECK(third.code == 4);
     // -99.9 %, or rounded to more where other programs have come between.
     CHECK_THAT(third.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
-    CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 rows 1 slower by more than 50 %, 0 with another image"));
+    CHECK_THAT(third.err, Catch::Contains("fast.json: of 1 row 1 slower by more than 50 %, 0 with another image"));
     CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written all the same
     const RunOutcome fourth = run_raya(small_bench({"--compare", changed(folder, "other.json", 1e-3, "0123456789")}));
     INFO(fourth.told());

@@ -67,6 +67,7 @@ TEST_CASE("raya help WORDS prints what --help prints", "[cli][help]") {
     CHECK(help_of({"help", "study", "fig7"}) == help_of({"study", "fig7", "--help"}));
     CHECK(help_of({"help", "help"}) == help_of({"help", "--help"}));
     CHECK_THAT(help_of({"help", "study", "fig7"}), Catch::StartsWith("Usage: raya study fig7 "));
+    CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // pages have one, which sorts tables
 }
 
 TEST_CASE("help of what there is not is refused, with what was perhaps meant", "[cli][help]") {

@@ -123,6 +123,32 @@ TEST_CASE("control characters of file names do not reach the terminal", "[cli][v
     }
 }
 
+TEST_CASE("what there is one of is named in the singular", "[cli][verbosity]") {
+    const ScratchFolder folder;
+    const std::string scene = scene_file("planes"), path = folder / "path.txt";
+    std::ofstream(path) << "angle 40\n";
+    const Words one = {"--size", "4", "--bounces", "1", "--format", "fp32", "--lanes", "1"};
+    const auto with_one = [&](Words words) {
+        words.insert(words.end(), one.begin(), one.end());
+        return words;
+    };
+    const std::vector<Words> runs = {
+        with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--antialias", "filter", "-v"}),
+        with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "bvh"}),
+        with_one({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "grid:1x1x1"}),
+        with_one({"render", scene, "-o", folder / "y.ppm", "--pes", "1", "--camera-path", path}),
+        with_one({"render", scene, "-o", folder / "x.ppm", "--camera-path", path, "--frames", "1:2"}),
+        with_one({"bench", scene, "--pes", "1", "--samples", "1"}),
+        {"verify", "--only", "machine bus", "--lanes", "1"}};
+    for (const Words& words : runs) {
+        const RunOutcome run = run_raya(words);
+        INFO(run.told());
+        CHECK((run.code == 0 || run.code == 2));
+        for (const std::string& line : lines_of(run.out + run.err))
+            CHECK_FALSE(has_line(line, "(.*[^0-9.,x])?1 [A-Za-z]*[^s ]s\\b.*"));
+    }
+}
+
 TEST_CASE("-q with -v is refused, in either order", "[cli][verbosity]") {
     const ScratchFolder outputs;
     for (const Words& both : {Words{"-q", "-v"}, Words{"--verbose", "--quiet"}, Words{"-vq"}})
