@@ -1,6 +1,7 @@
 // A session on one device: every buffer, program and command is made here; every command has a label and is profiled.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -54,6 +55,11 @@ class Session {
 
     /// See Program.
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
+
+    /// The most work of a launch labelled so, in its kernel's units: no limit until the device has cut loops.
+    std::uint32_t& launch_limit(const std::string& label) {
+        return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
+    }
 
     /// From now on a program is built once: the same source with the same options again gives the one that was built.
     void keep_programs() { kept_programs_ = std::make_unique<KeptPrograms>(); }
@@ -224,6 +230,7 @@ class Session {
     std::vector<Pending> pending_;
     Profile profile_;
     std::unique_ptr<KeptPrograms> kept_programs_;  // null: none are kept
+    std::map<std::string, std::uint32_t> launch_limits_;
     StepLog* steps_ = nullptr;
     std::size_t noted_arguments_ = 0;  // launches whose arguments are still to be kept
 };

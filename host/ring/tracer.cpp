@@ -1,11 +1,7 @@
 #include "host/ring/tracer.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <chrono>
-
-#include "host/error.hpp"
 
 namespace raya {
 namespace {
@@ -61,6 +57,7 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
     std::uint32_t work = progress ? work_.watched : work_.first;
     begin(label, range.begin);
     for (bool first = true, done = false; !done; first = false) {
+        work = guard_.begin(session_, label, work, progress_, kept_, pixels, counters.cycles, counters.events);
         const Clock::time_point start = Clock::now();
         launch(label, job, range, points, work, marks, pixels, counters);
         if (first && meanwhile) {
@@ -68,6 +65,11 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
             meanwhile();
         }
         const Standing standing = look(label);
+        if (standing.cut) {
+            guard_.go_back(session_, label, "fewer tests of a ray (--accel bvh or grid), other --lanes or --group",
+                           progress_, kept_, pixels, counters.cycles, counters.events);
+            continue;
+        }
         done = standing.done;
         work = next_work(work, work_.most, std::chrono::duration<double>(Clock::now() - start).count(), aim);
         if (!progress) continue;
@@ -85,17 +87,11 @@ Tracer::Standing Tracer::look(const std::string& label) {
     std::vector<raya_trace_progress> pes(pes_.count);
     session_.read(label, progress_, pes);
     Standing standing{.done = true};
-    std::uint64_t cut = 0;
     for (const raya_trace_progress& pe : pes) {
         standing.done &= pe.left == 0;
         standing.taken += pe.next;
-        cut += pe.cut;
+        standing.cut |= pe.cut > 0;
     }
-    if (cut > 0)
-        throw DeviceError(fmt::format(
-            "'{}': {} has ended loops of {} work-items early and said nothing, so the image would be wrong; remedy: "
-            "fewer tests of a ray (--accel bvh or grid), other --lanes or --group, or another device",
-            label, session_.device().name, cut));
     return standing;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/cl/launch_guard.hpp"
 #include "host/files/progress.hpp"
 #include "host/kernels/kernels.hpp"
 #include "host/ring/antialias.hpp"
@@ -54,7 +55,7 @@ class Tracer {
     /// Traces `points` (RAYA_POINTS_*) of the range's pixels, of those marked only where the points are new ones. Every
     /// command is labelled `label`. `job` has been broadcast. A launch ends by itself after a bounded amount of work,
     /// so that no watchdog ends it; launches follow until all is done. What the host has to do it does `meanwhile`,
-    /// once the device has the first of them. DeviceError where the device ends loops in silence.
+    /// once the device has the first of them. DeviceError where the device ends loops even of the smallest launch.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                const ProgressCallback& progress = {}, const std::function<void()>& meanwhile = {});
@@ -70,6 +71,7 @@ class Tracer {
     struct Standing {
         bool done = false;
         std::uint64_t taken = 0;  // pixels of all PEs since the share's first
+        bool cut = false;         // the device has ended loops early
     };
     Standing look(const std::string& label);
 
@@ -82,6 +84,7 @@ class Tracer {
     TraceKernel kernel_;
     Buffer<raya_trace_progress> progress_;  // [PE]
     Buffer<std::uint32_t> kept_;            // what work-items go on with in the next launch
+    LaunchGuard<raya_trace_progress, std::uint32_t, float, std::uint64_t, std::uint64_t> guard_;
 };
 
 }  // namespace raya

@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host/cl/launch_guard.hpp"
 #include "host/error.hpp"
-#include "host/torus/loops_cut.hpp"
 
 namespace raya {
 namespace {
@@ -79,14 +79,15 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
     Buffer<std::uint32_t> cut = session_.buffer<std::uint32_t>("loops cut", 1);
     session_.write("compose", colours, contributions.colours);
     session_.write("compose", starts, contributions.starts);
-    session_.fill("compose", cut, 0);
-    session_.launch("compose", compose_, groups_of(contributions, group_, session_.device()), group_, colours, starts,
-                    Uint<"pixels">{pixels}, image, cut);
+    std::uint32_t was_cut = 1;
+    for (std::size_t groups = groups_of(contributions, group_, session_.device()); was_cut; groups *= 2) {
+        session_.fill("compose", cut, 0);
+        session_.launch("compose", compose_, groups, group_, colours, starts, Uint<"pixels">{pixels}, image, cut);
+        session_.read("compose", cut, {&was_cut, 1});
+        if (was_cut && groups * group_ >= pixels) throw loops_cut("compose", session_.device().name, "fewer --bounces");
+    }
     std::vector<float> pixels_of_image(3ull * pixels);
     session_.read("compose", image, pixels_of_image);
-    std::uint32_t was_cut = 0;
-    session_.read("compose", cut, {&was_cut, 1});
-    if (was_cut) throw loops_cut("compose", session_.device().name, "fewer --bounces");
     return pixels_of_image;
 }
 

@@ -1,10 +1,10 @@
 #include "host/torus/node_array.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "host/torus/census.hpp"
-#include "host/torus/loops_cut.hpp"
 #include "kernels/shared/node_counts.h"
 
 namespace raya {
@@ -27,6 +27,15 @@ KernelOptions where_words_fit(KernelOptions options, const NodeMemories& memorie
     const std::size_t bytes = sizeof(std::uint32_t) * (shared + kRow + largest_node(memories));
     options.words_local = options.words_local && bytes <= device.local_memory_bytes && device.loop_turns == 0;
     return options;
+}
+
+constexpr const char* kFewerLoops = "fewer objects in a voxel (--voxels), a shorter --queue";
+
+// Whether the word `which` of any node's status is not 0.
+bool any_node(std::span<const std::uint32_t> status, std::size_t which) {
+    for (std::size_t at = which; at < status.size(); at += RAYA_STATUS_WORDS)
+        if (status[at] > 0) return true;
+    return false;
 }
 
 // What ranks have of their nodes, `each` words of every one, in the order of ranks and slots: as [node][each].
@@ -129,24 +138,21 @@ void NodeArray::clear() {
 
 template <class Launch>
 void NodeArray::launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch) {
-    const node_kernels::Work work{budget.work};
-    launch(work, node_kernels::Again{0});
-    while (!budget.once && is_left(label, nodes)) launch(work, node_kernels::Again{1});
-}
-
-bool NodeArray::is_left(const std::string& label, Slots nodes) {
+    const auto state = std::tie(queues_, rays_.outboxes(), rays_.inboxes(), homeward_.outboxes(), homeward_.inboxes(),
+                                returns_, status_, events_, made_, ended_);
     std::vector<std::uint32_t> status(std::size_t{nodes.count} * RAYA_STATUS_WORDS);
-    session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
-    check_loops(label, status);
-    for (std::size_t at = RAYA_STATUS_LEFT; at < status.size(); at += RAYA_STATUS_WORDS)
-        if (status[at] > 0) return true;
-    return false;
-}
-
-void NodeArray::check_loops(const std::string& label, std::span<const std::uint32_t> status) const {
-    for (std::size_t at = RAYA_STATUS_CUT; at < status.size(); at += RAYA_STATUS_WORDS)
-        if (status[at] > 0)
-            throw loops_cut(label, session_.device().name, "fewer objects in a voxel (--voxels), a shorter --queue");
+    for (std::uint32_t again = 0;;) {
+        const auto begin = [&](auto&... parts) { return guard_.begin(session_, label, budget.work, parts...); };
+        launch(node_kernels::Work{std::apply(begin, state)}, node_kernels::Again{again});
+        if (budget.once && !guard_.has_copies()) return;
+        session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
+        if (any_node(status, RAYA_STATUS_CUT)) {
+            std::apply([&](auto&... parts) { guard_.go_back(session_, label, kFewerLoops, parts...); }, state);
+            continue;
+        }
+        if (!any_node(status, RAYA_STATUS_LEFT)) return;
+        again = 1;
+    }
 }
 
 void NodeArray::inject(Slots nodes) {
@@ -220,7 +226,7 @@ std::vector<std::uint64_t> NodeArray::link_packets() const {
 NodeStatus NodeArray::look() {
     std::vector<std::uint32_t> own(status_.size());
     session_.read("look", status_, own);
-    check_loops("look", own);
+    if (any_node(own, RAYA_STATUS_CUT)) throw loops_cut("look", session_.device().name, kFewerLoops);
     const std::vector<std::uint32_t> all =
         ranks_.all_gather(std::span<const std::uint32_t>(own), sizes(RAYA_STATUS_WORDS));
     const NodeStatus status(in_order_of_nodes(share_, ranks_.count(), all, RAYA_STATUS_WORDS));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/cl/launch_guard.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/torus/launch_plan.hpp"
 #include "host/torus/link_exchange.hpp"
@@ -20,7 +21,7 @@
 namespace raya {
 
 /// The kernels are launched with one work-group for each node, again and again where a launch leaves something to do;
-/// each step is labelled with its kernel's name. DeviceError where the device ends loops early.
+/// each step is labelled with its kernel's name. DeviceError where the device ends loops even of the smallest launch.
 class NodeArray {
   public:
     /// Builds the kernels with `options` as the job needs them and takes the device memory. `memories` has the nodes of
@@ -90,8 +91,6 @@ class NodeArray {
     /// Launches by `launch(work, again)` until no node of `nodes` has anything left.
     template <class Launch>
     void launch_all(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
-    bool is_left(const std::string& label, Slots nodes);
-    void check_loops(const std::string& label, std::span<const std::uint32_t> status) const;
     std::vector<PacketRecord> records_of_all(const std::vector<PacketRecord>& own);
     std::vector<std::size_t> sizes(std::size_t of_node) const;  // [rank]: elements, so many of each of its nodes
     /// Local memory of a kernel: `shared` words, and the node's where kernels copy them.
@@ -115,6 +114,9 @@ class NodeArray {
     std::size_t returns_coming_ = 0;  // into returns_here_
     Buffer<std::uint64_t> events_, made_, ended_;
     Buffer<raya_treated> treated_;
+    LaunchGuard<raya_packet, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, raya_head, std::uint32_t,
+                std::uint64_t, std::uint64_t, std::uint64_t>
+        guard_;
     LinkExchange rays_, homeward_;  // boxes of rays, of returns
     node_kernels::Inject inject_;
     node_kernels::TraceVoxel trace_;

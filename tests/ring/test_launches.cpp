@@ -1,4 +1,6 @@
 // Launches of trace end by themselves after a bounded amount of work, keep their trees, and the next ones go on.
+#include <fmt/core.h>
+
 #include <catch2/catch.hpp>
 
 #include "host/error.hpp"
@@ -141,13 +143,55 @@ TEST_CASE("faults in what launches keep are seen", "[ring][faults]") {
     }
 }
 
+// A launch of more work than this is cut: counts, costs, pixels and kept trees are wrong afterwards.
+constexpr std::uint32_t kUncut = 40;
+
+std::vector<SourcePatch> cut_launches() {
+    return {{"ring/trace.cl", "if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);",
+             fmt::format(
+                 "if (work > {}u) {{\n"
+                 "        atomic_inc(&mine->cut);\n"
+                 "        for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += 1000;\n"
+                 "        for (uint i = item; i < capacity; i += RAYA_GROUP) store.pixels[i] = store.cycles[i] = 7;\n"
+                 "        for (uint w = 0; w < 3; ++w) kept[(w * get_global_size(0) + get_global_id(0)) * RAYA_LANES] "
+                 "= 9;\n"
+                 "    }}",
+                 kUncut)}};
+}
+
+TEST_CASE("a launch whose loops are cut is repeated with half the work, and nothing of it remains", "[ring]") {
+    const auto accel = GENERATE(AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh);
+    const auto method = GENERATE(AntialiasMethod::kNone, AntialiasMethod::kSupersample);
+    CAPTURE(accel, antialias_name(method));
+    const Scene scene = project_scene("glass");
+    RingCase c{.width = 20, .height = 15, .pes = 4, .group = 3, .keep_costs = true};
+    c.antialias.method = method;
+    RingSettings settings = settings_of(c);
+    settings.accel.kind = accel;
+    Session session(choose_device(""));
+    const RingResult whole = RingRenderer(session, scene, settings).render();
+    settings.kernels.sources.patches = cut_launches();
+    session.launch_limit(kTracePass) = session.launch_limit(kSupersamplePass) = 300;
+    const RingResult first = RingRenderer(session, scene, settings).render();
+    CHECK(answer_of(first) == answer_of(whole));
+    CHECK(session.launch_limit(kTracePass) == 37);
+    CHECK(session.launch_limit(kSupersamplePass) == (method == AntialiasMethod::kNone ? 300 : 37));
+    const RingResult second = RingRenderer(session, scene, settings).render();
+    CHECK(answer_of(second) == answer_of(whole));
+    CHECK(launches_of(second) == launches_of(first) - (method == AntialiasMethod::kNone ? 3 : 6));  // 300, 150, 75
+}
+
 TEST_CASE("a device that ends loops early is an error, not an image", "[ring]") {
     const Scene scene = project_scene("glass");
     Session session(choose_device(""));
     RingSettings settings = settings_of({.width = 20, .height = 15, .pes = 4});
     settings.kernels.sources.patches = {{"shared/loop_canary.clh", "i < two", "i < two - 1"}};
-    CHECK_THROWS_WITH(RingRenderer(session, scene, settings).render(),
-                      Catch::Contains("has ended loops of") && Catch::Contains("remedy"));
+    for (const std::uint32_t limit : {UINT32_MAX, 300u}) {  // not repeated, and repeated down to the smallest launch
+        session.launch_limit(kTracePass) = limit;
+        CHECK_THROWS_WITH(RingRenderer(session, scene, settings).render(),
+                          Catch::Contains("has ended loops early") && Catch::Contains("remedy"));
+    }
+    CHECK(session.launch_limit(kTracePass) == 1);
 }
 
 }  // namespace raya

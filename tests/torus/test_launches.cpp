@@ -1,5 +1,7 @@
 // Launches that end after a little work and go on, and links by a kernel in place of copies: the same image and the
 // same counts.
+#include <fmt/core.h>
+
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -189,6 +191,46 @@ TEST_CASE("a node's launch is bounded by tests, and by the turns of loops where 
     }
     one_voxel_too_long.look(status);
     CHECK(one_voxel_too_long.trace_voxel() == LaunchBudget{1, false});  // a packet a launch; the canary tells
+}
+
+TEST_CASE("a node's launch whose loops are cut is repeated with half the work, whichever kernel it is", "[torus]") {
+    struct Row {
+        const char *kernel, *ruined;  // what a cut launch spoils
+    };
+    const char* const counted =
+        "events[(size_t)slot * RAYA_EVENTS] += 1000; made[(size_t)slot * RAYA_KINDS + 1] += 9; "
+        "queues[(size_t)slot * run->queue].head.pixel += 1;";
+    const char* const moved =
+        "ended[(size_t)slot * RAYA_KINDS + 2] += 9; status[RAYA_STATUS_QUEUE_MAX] += 1000; "
+        "queues[(size_t)slot * run->queue].head.pixel += 1;";
+    const Row rows[] = {{"inject", counted}, {"trace_voxel", counted}, {"route", moved}, {"accept", moved}};
+    const Scene scene = random_view_scene(kRichScenes[0]);
+    TorusCase c{.width = 6, .height = 5, .nodes = {2, 2, 1}, .lanes = 1, .group = 3, .bounces = 3};
+    for (const Row& row : rows) {
+        CAPTURE(row.kernel);
+        Session session(choose_device(""));
+        c.sources = {};
+        const TorusResult whole = render_torus(session, scene, c);
+        const std::string file = fmt::format("torus/{}.cl", row.kernel);
+        const std::string text = kernel_file(file);
+        const std::size_t at = text.find("if (loops_were_cut("), end = text.find('\n', at);
+        c.sources.patches = {{file, text.substr(at, end - at),
+                              fmt::format("if (work > 3u) {{ status[RAYA_STATUS_CUT] = 1; {} }}", row.ruined)}};
+        session.launch_limit(row.kernel) = 8;
+        check_same(render_torus(session, scene, c), whole);
+        CHECK(session.launch_limit(row.kernel) == 2);
+        check_same(render_torus(session, scene, c), whole);
+    }
+}
+
+TEST_CASE("colours are added by more work-groups where loops were cut", "[torus]") {
+    Session session(choose_device(""));
+    const Scene scene = random_view_scene(kRichScenes[0]);
+    TorusCase c{.width = 16, .height = 15, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
+    const std::string right = one_image(render_torus(session, scene, c));
+    c.sources.patches = {
+        {"torus/compose.cl", "if (loops_were_cut(", "if (pixels > 4 * get_global_size(0) || loops_were_cut("}};
+    CHECK(one_image(render_torus(session, scene, c)) == right);
 }
 
 TEST_CASE("a device that ends loops early is found out, whichever kernel it was", "[torus]") {
