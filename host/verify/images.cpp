@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <bit>
+#include <numeric>
 #include <optional>
 
 #include "host/ring/mapping.hpp"
@@ -37,11 +38,18 @@ struct Rendering {
     bool global_words = false;  // as where local memory is too small for them
     bool refined = false;       // as where division, square root and a b + c are not rounded correctly
 
+    // Of such a ring or torus all renderings of a picture count the same.
+    std::string counted_as() const {
+        if (torus)
+            return fmt::format("{} {}{}", links_name(links), sides_text(nodes),
+                               inject == Injection::kRoot ? " root" : "");
+        return accel == AccelKind::kNone ? "ring" : accel_text({.kind = accel});
+    }
+
     std::string name() const {
-        std::string way = torus ? fmt::format("{} {}{}", links_name(links), sides_text(nodes),
-                                              inject == Injection::kRoot ? " root" : "")
+        std::string way = torus ? counted_as()
                                 : fmt::format("{} on {}{}", mapping_name(mapping), pes,
-                                              accel == AccelKind::kNone ? "" : ", " + accel_text({.kind = accel}));
+                                              accel == AccelKind::kNone ? "" : ", " + counted_as());
         if (mapping.kind == RAYA_FOLD_BLOCK) way += ", block fold";
         if (work_per_launch) way += fmt::format(", launches of {} {}", work_per_launch, torus ? "units" : "tests");
         if (link_move == LinkMove::kKernel) way += ", links by a kernel";
@@ -52,8 +60,7 @@ struct Rendering {
     }
 };
 
-KernelChoice kernels_for(const Verification& v, const Rendering& r) {
-    KernelChoice choice = v.kernels(r.lanes, r.group_size);
+KernelChoice kernels_for(KernelChoice choice, const Rendering& r) {
     choice.local_words = !r.global_words;
     choice.exact_arithmetic = !r.refined;
     return choice;
@@ -61,21 +68,28 @@ KernelChoice kernels_for(const Verification& v, const Rendering& r) {
 
 struct Rendered {
     Image image;
-    std::string options;
+    std::string options, counts;
 };
 
-Rendered render_on_ring(const Verification& v, Session& session, const Rendering& r) {
+std::uint64_t sum(std::span<const std::uint64_t> numbers) {
+    return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
+}
+
+Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Rendering& r) {
     const Picture& picture = picture_named(r.picture);
     RingSettings settings = plain_settings(picture);
     settings.mapping = make_mapping(r.mapping, {kPictureSide, kPictureSide}, r.pes);
     settings.accel.kind = r.accel;
     settings.work_per_launch = r.work_per_launch;
-    settings.kernels = kernels_for(v, r);
+    settings.kernels = kernels_for(kernels, r);
+    settings.keep_costs = true;
     RingResult result = RingRenderer(session, scene_of(picture), settings).render();
-    return {std::move(result.image), result.build_options};
+    const std::string counts = counts_text(
+        result.all.events, {{"cycles", sum(result.all.load.per_pe)}, {"pixel_cycles", sum(result.cost().cycles)}});
+    return {std::move(result.image), result.build_options, counts};
 }
 
-Rendered render_on_torus(const Verification& v, Session& session, const Rendering& r) {
+Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Rendering& r) {
     const Picture& picture = picture_named(r.picture);
     TorusSettings s;
     s.machine = machine_named("torus");
@@ -89,10 +103,16 @@ Rendered render_on_torus(const Verification& v, Session& session, const Renderin
     s.format = parse_format(picture.format);
     s.sampling = picture.sampling;
     s.work_per_launch = r.work_per_launch;
-    s.kernels = kernels_for(v, r);
+    s.kernels = kernels_for(kernels, r);
     s.kernels.link_move = r.link_move;
     TorusResult result = TorusRenderer(session, scene_of(picture), s).render();
-    return {std::move(result.image), result.build_options};
+    const std::string counts = counts_text(
+        result.events, {{"cycles", sum(result.load.per_pe)}, {"packets", sum(result.made)}, {"hops", result.hops}});
+    return {std::move(result.image), result.build_options, counts};
+}
+
+Rendered render(const KernelChoice& kernels, Session& session, const Rendering& r) {
+    return r.torus ? render_on_torus(kernels, session, r) : render_on_ring(kernels, session, r);
 }
 
 std::string colour_text(const std::array<std::uint32_t, 3>& bits) {
@@ -138,8 +158,9 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
             fmt::format("{} work-items wanted, the device has {} in a group", r.group_size, v.device().max_group_size));
     const Picture& picture = picture_named(r.picture);
     const KnownPicture& known = known_picture(picture);
-    const Rendered got = r.torus ? render_on_torus(v, session, r) : render_on_ring(v, session, r);
-    if (pixel_hash(got.image) == known.hash) return passed(known.hash.substr(0, 8));
+    const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
+    if (pixel_hash(got.image) == known.hash)
+        return check_counts(known.counts.at(r.counted_as()), got.counts, known.hash.substr(0, 8), got.options);
     std::size_t wrong = 0, first = 0;
     const std::size_t pixels = known.image.rgb.size() / 3;
     for (std::size_t i = pixels; i-- > 0;) {
@@ -245,6 +266,16 @@ std::vector<Rendering> all_builds() {
 }
 
 }  // namespace
+
+std::map<std::string, std::string> counts_of_ways(Session& session, const Picture& picture) {
+    std::map<std::string, std::string> counts;
+    std::vector<Rendering> all = usual_renderings();
+    all.push_back({.picture = picture.name});  // every picture on a ring
+    for (const Rendering& r : all)
+        if (r.picture == picture.name && !counts.contains(r.counted_as()))
+            counts[r.counted_as()] = render({.lanes = 1, .group_size = 1}, session, r).counts;
+    return counts;
+}
 
 void verify_images(Verification& v) {
     std::vector<Rendering> renderings = usual_renderings();

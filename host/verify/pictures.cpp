@@ -16,10 +16,11 @@ namespace raya {
 namespace {
 
 constexpr const char* kHeading =
-    "# Hashes and pixels of pictures, made by tests/verify/make_pictures.cpp: do not edit.\n"
-    "# \"NAME: HASH\"; then a line a row: bits of RED/GREEN/BLUE, hexadecimal digits of fp32 numbers without the zeros "
-    "at their\n"
-    "# ends; .: the same as on the left, =: as in the picture before.\n";
+    "# Hashes, counts and pixels of pictures, made by tests/verify/make_pictures.cpp: do not edit.\n"
+    "# \"NAME: HASH\"; \"counts WAY: COUNTER NUMBER ...\"; then a line a row: bits of RED/GREEN/BLUE, "
+    "hexadecimal\n"
+    "# digits of fp32 numbers without the zeros at their ends; .: the same as on the left, =: as in the picture "
+    "before.\n";
 
 // The numbers of "3f8/3f8/0"; std::logic_error where it is not so.
 std::vector<float> colour_of(const std::string& text) {
@@ -106,8 +107,10 @@ std::vector<KnownPicture> parse_pictures(const std::string& text) {
     for (std::string line; std::getline(lines, line);) {
         if (line.empty() || line[0] == '#') continue;
         const std::size_t colon = line.find(": ");
-        if (colon != std::string::npos)
-            all.push_back({line.substr(0, colon), line.substr(colon + 2), {}});
+        if (line.starts_with("counts ") && colon != std::string::npos && !all.empty())
+            all.back().counts[line.substr(7, colon - 7)] = line.substr(colon + 2);
+        else if (colon != std::string::npos)
+            all.push_back({line.substr(0, colon), line.substr(colon + 2), {}, {}});
         else if (!all.empty())
             read_row(line, all.size() > 1 ? all[all.size() - 2].image : Image{}, all.back().image);
         else
@@ -124,6 +127,7 @@ std::string pictures_text(const std::vector<KnownPicture>& all) {
     std::vector<std::string> before(kPictureSide * kPictureSide);
     for (const KnownPicture& picture : all) {
         text += fmt::format("{}: {}\n", picture.name, picture.hash);
+        for (const auto& [way, counts] : picture.counts) text += fmt::format("counts {}: {}\n", way, counts);
         std::string left;
         for (std::size_t i = 0; i < before.size(); ++i) {
             const std::string own = colour_text(&picture.image.rgb.at(3 * i));
@@ -141,6 +145,37 @@ const KnownPicture& known_picture(const Picture& picture) {
         std::find_if(all.begin(), all.end(), [&](const KnownPicture& known) { return known.name == picture.name; });
     if (found == all.end()) throw std::logic_error("known pictures: no '" + picture.name + "'");
     return *found;
+}
+
+std::string counts_text(const EventCounts& events, const std::vector<std::pair<const char*, std::uint64_t>>& more) {
+    std::istringstream names(
+        "primary primary_hits reflected refracted shadow shadow_hits sphere_tests plane_tests "
+        "polygon_tests cone_tests shaded lit highlights walks steps discarded");
+    std::string text, name;
+    for (const std::uint64_t number : events) text += fmt::format("{} {} ", (names >> name, name), number);
+    for (const auto& [other, number] : more) text += fmt::format("{} {} ", other, number);
+    text.pop_back();
+    return text;
+}
+
+Verdict check_counts(const std::string& known, const std::string& counted, const std::string& told,
+                     const std::string& options) {
+    if (counted == known) return passed(told);
+    Fault fault{
+        .where = "sums over a right image",
+        .options = options,
+        .remedies = {"are checks of \"number\" or \"geometry\" wrong too? then those first",
+                     "RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: are the counts right? tell raya's authors"}};
+    std::istringstream right(known), got(counted);
+    std::string names;
+    for (std::string name, expected, found; right >> name >> expected && got >> name >> found;) {
+        if (found == expected) continue;
+        const char* comma = names.empty() ? "" : ", ";
+        names += comma + name;
+        fault.expected += fmt::format("{}{} {}", comma, name, expected);
+        fault.got += fmt::format("{}{} {}", comma, name, found);
+    }
+    return failed("wrong counts: " + names, fault);
 }
 
 }  // namespace raya

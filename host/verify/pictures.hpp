@@ -2,10 +2,15 @@
 // made by tests/verify/make_pictures.cpp).
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "host/checks/verdict.hpp"
+#include "host/cl/commands.hpp"
 #include "host/image/image.hpp"
+#include "host/machine/machine.hpp"
 #include "host/machine/number_format.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/ring/ring_settings.hpp"
@@ -38,15 +43,26 @@ RingSettings plain_settings(const Picture& picture);
 struct KnownPicture {
     std::string name, hash;
     Image image;
+    std::map<std::string, std::string> counts;  // "COUNTER NUMBER ...", by the way of rendering: "ring", "bvh", ...
 };
 
-/// A line "NAME: HASH" opens a picture, then a line a row follows: pixels as RED/GREEN/BLUE, the bits in hexadecimal
-/// digits without the zeros at their ends, "." for that on the left once more, "=" for that of the picture before.
-/// std::logic_error for what is not so.
+/// A line "NAME: HASH" opens a picture, then lines "counts WAY: COUNTER NUMBER ..." and a line a row follow: pixels as
+/// RED/GREEN/BLUE, the bits in hexadecimal digits without the zeros at their ends, "." for that on the left once more,
+/// "=" for that of the picture before. std::logic_error for what is not so.
 std::vector<KnownPicture> parse_pictures(const std::string& text);
 std::string pictures_text(const std::vector<KnownPicture>& all);
 
 /// Those that the program carries. std::logic_error where the file lacks the picture.
 const KnownPicture& known_picture(const Picture& picture);
+
+/// "COUNTER NUMBER ...": the events in the order of kernels/shared/events.h, then what else was counted.
+std::string counts_text(const EventCounts& events, const std::vector<std::pair<const char*, std::uint64_t>>& more);
+
+/// Passes with `told` or fails with every counter that differs. `options`: build options of the kernels.
+Verdict check_counts(const std::string& known, const std::string& counted, const std::string& told,
+                     const std::string& options);
+
+/// What each way counts in which `raya verify` renders the picture: neither lanes nor groups, PEs or launches matter.
+std::map<std::string, std::string> counts_of_ways(Session& session, const Picture& picture);
 
 }  // namespace raya

@@ -1,6 +1,11 @@
 // Faults of a device, its driver or its compiler, as patches of kernels: in the code that is checked, never in a check.
 #pragma once
+#include <fmt/core.h>
+
+#include <vector>
+
 #include "host/kernels/kernel_patch.hpp"
+#include "kernels/shared/events.h"
 
 namespace raya {
 
@@ -29,5 +34,72 @@ inline const SourcePatch kExchangeFault{"torus/exchange.cl", "to[i] = from[i];",
                                         "to[i] = from[i] ^ (uint8)(0, 0, 0, 0, 0, 0, 1 << 21, 0);"};
 /// A launch that goes on takes what the one before has brought home for gone.
 inline const SourcePatch kAgainFault{"torus/accept.cl", "gone = !again && (root", "gone = (root"};
+
+/// Of an event that a kernel counts at one place: a wrong kind, a lost count, a double one.
+struct CountFault {
+    const char* event;  // as verify names the counter
+    SourcePatch patch;
+    const char* only;  // a check that must see it
+};
+
+inline const char* const kOnGlass = "image glass fp32: tiles";
+inline const char* const kOnCones = "image cones e5m10";
+inline const char* const kOnGrid = "image polygons fp32: cyclic:8 on 20, grid";
+inline const char* const kOnBvh = "image polygons fp32: cyclic:8 on 20, bvh";
+inline const char* const kOnTorus = "image polygons fp32: torus3d 2x2x2, launches";
+
+inline const std::vector<CountFault> kCountFaults = {
+    {"refracted", {"shading/tree.clh", "count_event(t, RAYA_REFRACTED", "count_event(t, RAYA_REFLECTED"}, kOnGlass},
+    {"reflected", {"shading/tree.clh", "count_event(t, RAYA_REFLECTED, m);", ""}, kOnGlass},
+    {"primary_hits",
+     {"shading/shade.clh", "RAYA_PRIMARY_HITS, met.struck & (t->level == 0u)", "RAYA_PRIMARY_HITS, met.struck"},
+     kOnGlass},
+    {"shaded",
+     {"shading/shade.clh", "count_event(t, RAYA_SHADED, met.struck);",
+      "count_event(t, RAYA_SHADED, met.struck); count_event(t, RAYA_SHADED, met.struck);"},
+     kOnGlass},
+    {"shadow", {"shading/shade.clh", "RAYA_SHADOW, *faces", "RAYA_PRIMARY_HITS, *faces"}, kOnGlass},
+    {"shadow_hits", {"shading/shade.clh", "count_event(t, RAYA_SHADOW_HITS, stopped);", ""}, kOnGlass},
+    {"lit", {"shading/shade.clh", "RAYA_LIT, lit", "RAYA_HIGHLIGHTS, lit"}, kOnGlass},
+    {"highlights", {"shading/shade.clh", "RAYA_HIGHLIGHTS, shines", "RAYA_HIGHLIGHTS, lit"}, kOnGlass},
+    {"sphere_tests", {"shading/tree.clh", "m, all->spheres)", "m, all->spheres + 1)"}, kOnGlass},
+    {"plane_tests", {"shading/tree.clh", "m, all->planes)", "m, 0)"}, kOnGlass},
+    {"polygon_tests", {"shading/tree.clh", "m, all->polygons)", "m, 2 * all->polygons)"}, kOnGlass},
+    {"cone_tests", {"shading/tree.clh", "m, all->cones)", "m, all->planes)"}, kOnCones},
+    {"walks", {"grid/ray_pool.clh", "count_event(t, RAYA_WALKS, walks.truth);", ""}, kOnGrid},
+    {"polygon_tests",
+     {"grid/ray_pool.clh", "t->events[RAYA_POLYGON_TESTS].all += p->counts",
+      "t->events[RAYA_CONE_TESTS].all += p->counts"},
+     kOnGrid},
+    {"walks", {"bvh/ray_pool.clh", "RAYA_WALKS, p->waits.truth", "RAYA_STEPS, p->waits.truth"}, kOnBvh},
+    {"steps",
+     {"bvh/ray_pool.clh", "+= p->nodes.all;\n    t->events[RAYA_SPHERE",
+      "+= 2u * p->nodes.all;\n    t->events[RAYA_SPHERE"},
+     kOnBvh},
+    {"pixel_cycles", {"ring/pixel_store.clh", "= cycles.lane[lane];", "= 0;"}, kOnGlass},
+    {"reflected",
+     {"torus/shade_packets.clh", "kind == RAYA_KIND_REFLECTED ? RAYA_REFLECTED : RAYA_REFRACTED", "RAYA_REFRACTED"},
+     kOnTorus},
+    {"discarded", {"torus/inject.cl", "2 * RAYA_DISCARDED", "2 * RAYA_PRIMARY"}, kOnTorus},
+    {"steps",
+     {"torus/trace_voxel.cl", "RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND))", "RAYA_WALKS, m"},
+     kOnTorus},
+    {"shadow_hits", {"torus/shade_packets.clh", "RAYA_SHADOW_HITS, stopped", "RAYA_LIT, stopped"}, kOnTorus}};
+
+/// The same for any event (RAYA_*), where counts of a pixel or node are added up: `how` is 0 for a wrong kind, 1 for a
+/// lost count, 2 for a double one.
+inline SourcePatch ring_count_fault(int event, int how) {
+    if (how == 0)
+        return {"ring/pixel_store.clh", "store->totals[e].all += events;",
+                fmt::format("store->totals[e == {} ? {} : e].all += events;", event, (event + 1) % RAYA_EVENTS)};
+    return {"ring/pixel_store.clh", "choose_index(done, t->events[e].all, (index)(0)));",
+            fmt::format("choose_index(done, t->events[e].all * (e == {} ? {}u : 1u), (index)(0)));", event,
+                        how == 1 ? 0 : 2)};
+}
+inline SourcePatch torus_count_fault(int event, int how) {
+    return {"torus/shared_counts.clh", "events[e] += number;",
+            how == 0 ? fmt::format("events[e == {} ? {} : e] += number;", event, (event + 1) % RAYA_EVENTS)
+                     : fmt::format("events[e] += e == {} ? {}u * number : number;", event, how == 1 ? 0 : 2)};
+}
 
 }  // namespace raya

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/verify/pictures.hpp"
 #include "host/verify/verify.hpp"
 #include "tests/files/scratch_folder.hpp"
 #include "tests/paths.h"
@@ -163,6 +164,55 @@ TEST_CASE("faults of links by a kernel and of launches that go on are seen on th
         CHECK(checks.size() == 2);
         CHECK(failures(checks) == bounded);
     }
+}
+
+TEST_CASE("a wrong kind, a lost count and a double count are seen where events are counted", "[verify][faults][slow]") {
+    for (const CountFault& fault : kCountFaults) {
+        CAPTURE(fault.event, fault.patch.file, fault.patch.replace);
+        const auto checks = run({fault.patch}, fault.only);
+        REQUIRE(checks.size() == 1);
+        REQUIRE(failures(checks).size() == 1);
+        const Verdict& verdict = checks[0].verdict;
+        CHECK_THAT(verdict.told, Catch::StartsWith("wrong counts: "));
+        CHECK_THAT(verdict.told + ",", Catch::Contains(fmt::format(" {},", fault.event)));
+        CHECK_THAT(verdict.fault.expected, Catch::Contains(fmt::format("{} ", fault.event)));
+        CHECK_THAT(verdict.fault.got, Catch::Contains(fmt::format("{} ", fault.event)));
+        CHECK(verdict.fault.expected != verdict.fault.got);
+    }
+}
+
+TEST_CASE("every event's wrong kind, lost count and double count is seen by the image checks",
+          "[verify][faults][.][long]") {
+    for (int event = 0; event < RAYA_EVENTS; ++event)
+        for (const int how : {0, 1, 2}) {
+            const bool walks = event == RAYA_WALKS || event == RAYA_STEPS, torus = event == RAYA_DISCARDED;
+            CAPTURE(event, how);
+            if (!torus)
+                CHECK(failures(run({ring_count_fault(event, how)}, walks                      ? kOnBvh
+                                                                   : event == RAYA_CONE_TESTS ? kOnCones
+                                                                                              : kOnGlass))
+                          .size() == 1);
+            const bool on_torus = event != RAYA_SPHERE_TESTS && event != RAYA_PLANE_TESTS && event != RAYA_CONE_TESTS &&
+                                  event != RAYA_REFRACTED;  // of polygons alone
+            if (on_torus) CHECK(failures(run({torus_count_fault(event, how)}, kOnTorus)).size() == 1);
+        }
+}
+
+TEST_CASE("wrong counts are seen by image checks alone, by all where such events are", "[verify][faults][slow]") {
+    const auto checks = run({kCountFaults.front().patch, torus_count_fault(RAYA_SHADOW, 2)}, "");
+    std::set<std::string> layers;
+    for (const Check& check : checks)
+        if (check.verdict.outcome == Outcome::kFail) {
+            layers.insert(check.layer);
+            CHECK_THAT(check.name, Catch::StartsWith("glass ") || Catch::Contains("torus"));
+        }
+    CHECK(layers == std::set<std::string>{"image"});
+    CHECK(failures(checks).size() >= 8);
+}
+
+TEST_CASE("known pictures have the counts of a ring, and of other ways in which they are rendered", "[verify]") {
+    for (const Picture& picture : pictures()) CHECK(known_picture(picture).counts.contains("ring"));
+    CHECK_THAT(known_picture(picture_named("polygons fp32")).counts.at("bvh"), Catch::StartsWith("primary 400 "));
 }
 
 TEST_CASE("a device that refuses a build fails the check, and the others go on", "[verify]") {

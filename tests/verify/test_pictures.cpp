@@ -20,6 +20,8 @@ TEST_CASE("pictures that are not in verify --quick are what the default device m
         if (std::any_of(quick.begin(), quick.end(), [&](const auto& name) { return name.starts_with(beginning); }))
             continue;
         CHECK(pixel_hash(plain_picture(picture)) == known_picture(picture).hash);
+        Session session(choose_device(""));
+        CHECK(counts_of_ways(session, picture) == known_picture(picture).counts);
         ++made;
     }
     CHECK(made == 6);
