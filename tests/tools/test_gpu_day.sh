@@ -19,14 +19,16 @@ expect() {  # expect CODE TEXT...
 }
 ended() { find "$out" -name '*.code' | wc -l; }
 
-# What both lists of hashes have is the same in them.
+# What both lists of hashes and counts have is the same in them; a picture has the same hash however it is made.
 common=0
-while IFS=, read -r scene options hash; do
-    found=$(awk -F, -v scene="$scene" -v options="$options" '$1 == scene && $2 == options { print $3 }' "$day/gpu_day.csv")
-    [[ -z $found || $found == "$hash" ]] || { echo "FAILED: $scene $options: $hash in renders.csv, $found in gpu_day.csv"; exit 1; }
-    common=$((common + ${#found} / 32))
+while IFS=, read -r scene options row; do
+    found=$(awk -F, -v scene="$scene" -v options="$options" '$1 == scene && $2 == options { sub(/^[^,]*,[^,]*,/, ""); print }' "$day/gpu_day.csv")
+    [[ -z $found || $found == "$row" ]] || { echo "FAILED: $scene $options: $row in renders.csv, $found in gpu_day.csv"; exit 1; }
+    [[ -z $found ]] || common=$((common + 1))
 done < <(grep -v '^#' "$root/tests/portability/renders.csv")
-((common == 14)) || { echo "FAILED: $common images in both lists, not 14"; exit 1; }
+((common == 16)) || { echo "FAILED: $common rows in both lists, not the columns' names and 15"; exit 1; }
+several=$(grep -v '^#' "$day/gpu_day.csv" | sed -E 's/ --(accel|machine|nodes) [^ ,]*//g' | cut -d, -f1-3 | sort -u | cut -d, -f1,2 | uniq -d)
+[[ -z $several ]] || { echo "FAILED: several hashes of $several"; exit 1; }
 
 if (($# > 0)); then
     ln -s "$(readlink -f "$1")" "$day/raya"
@@ -54,15 +56,24 @@ case $1 in
         printf 'trace  fp32  1  %d  %d  5  1 1 1 1 1 abc\ntrace  e6m15  1  1  2000.5  5  1 1 1 1 1 abc\n' "$group" $((group * 80)) ;;
     render)
         scene=$(basename "$2" .nff)
-        read -ra words <<<"${*:5}"
+        report=$6
+        read -ra words <<<"${*:7}"
         options=
         for ((i = 0; i < ${#words[@]}; ++i)); do
             case ${words[i]} in
-                --format | --antialias) options+=" ${words[i]} ${words[i + 1]}" ;;
+                --format | --antialias | --nodes) options+=" ${words[i]} ${words[i + 1]}" ;;
+                --accel | --machine) [[ ${words[i + 1]} =~ ^(grid|bvh|torus)$ ]] && options+=" ${words[i]} ${words[i + 1]}" ;;
                 --size) [[ ${words[i + 1]} == 20x20 ]] || options+=" --size ${words[i + 1]}" ;;
             esac
         done
-        hash=$(grep -F "$scene,${options# }," "$here/right.csv" | cut -d, -f3)
+        IFS=, read -r -a n < <(grep -F "$scene,${options# }," "$here/right.csv")
+        hash=${n[2]}
+        printf '{\n  "rays": {\n    "primary": %d,\n    "primary_hits": %d,\n    "reflected": %d,\n    "refracted": %d,\n    "shadow": %d,\n    "shadow_hits": %d\n  },\n' "${n[@]:3:6}" >"$report"
+        printf '  "tests": {\n    "sphere": %d,\n    "plane": %d,\n    "polygon": %d,\n    "cone": %d\n  },\n  "walks": %d,\n  "steps": %d,\n' "${n[@]:9:6}" >>"$report"
+        printf '  "shading": {\n    "hits": %d,\n    "lit": %d,\n    "highlights": %d\n  },\n' "${n[@]:15:3}" >>"$report"
+        printf '  "load": {\n    "mean": 1.5,\n    "per_pe": [\n      %d,\n      1\n    ],\n    "trace": {\n      "per_pe": [\n        5\n      ]\n    }\n  },\n' $((n[18] - 1)) >>"$report"
+        ((n[20] == 0)) || printf '  "torus": {\n    "discarded": %d,\n    "packets": {\n      "primary": {\n        "made": %d,\n        "ended": 1\n      },\n      "return": {\n        "made": 2,\n        "ended": 2\n      }\n    },\n    "hops": %d\n  },\n' "${n[19]}" $((n[20] - 2)) "${n[21]}" >>"$report"
+        printf '  "measured": {\n    "hits": 3\n  }\n}\n' >>"$report"
         echo "roof    trace: compute bound"
         echo "image   x.ppm ($hash)" ;;
 esac
@@ -93,8 +104,13 @@ expect 0 "Nothing of what has run" "64 x 64, 30 spheres" "balls 2, bvh" "rooflin
 [[ $page == "$(<"$out/page.md")" ]] || fail "page.md is another page"
 (($(wc -l <"$out/page.md") < 130)) || fail "more than a page"
 
-# A hash that is not the expected one.
-sed -i 's/^\(cones,--format spa22\),.*/\1,11111111111111111111111111111111/' "$day/gpu_day.csv"
+# A count that is not the expected one; then a hash.
+cp "$day/gpu_day.csv" "$scratch/right.csv"
+sed -i 's/^\(cones,--format spa22 --accel bvh,[^,]*,400,400\),[0-9]*,/\1,11,/' "$day/gpu_day.csv"
+rm "$out"/steps/hash-bvh-cones-spa22.*
+gpu_day --stage 3
+expect 4 "bvh: 3 of 4 right" "- hash-bvh-cones-spa22: wrong counts: reflected is 106, right is 11"
+sed 's/^\(cones,--format spa22 --accel bvh\),.*/\1,11111111111111111111111111111111/' "$scratch/right.csv" >"$day/gpu_day.csv"
 rm "$out"/steps/hash-bvh-cones-spa22.*
 gpu_day --stage 3
 expect 4 "| 3 | hashes | 15 | 1 | 0" "bvh: 3 of 4 right" "- hash-bvh-cones-spa22: wrong image b2cf660716baa62806768b79dbedff7b, right is 11111111111111111111111111111111"

@@ -29,7 +29,10 @@ case $1 in
     render)
         while [[ $1 != --report ]]; do shift; done
         [[ -e $0.hash ]] && right=$(<"$0.hash") || right=5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a
-        echo '{"image": {"hash": "'"${POCL_DEVICES:-$right}"'"}}' >"$2" ;;
+        [[ -e $0.reflected ]] && reflected=$(<"$0.reflected") || reflected=5
+        echo '{"image": {"hash": "'"${POCL_DEVICES:-$right}"'"}, "walks": 0, "steps": 0, "load": {"per_pe": [7, 8]},
+            "rays": {"primary": 400, "primary_hits": 40, "reflected": '"$reflected"', "refracted": 0, "shadow": 0, "shadow_hits": 0},
+            "tests": {"sphere": 1, "plane": 2, "polygon": 3, "cone": 4}, "shading": {"hits": 40, "lit": 0, "highlights": 0}}' >"$2" ;;
 esac
 RAYA
 cat >"$build/tests/portability_defects" <<'DEFECTS'
@@ -50,15 +53,18 @@ expect() { [[ $out == *"$1"* ]] || fail "no '$1'"; }  # expect TEXT
 # Hashes: written once, then what every implementation is held against, the first one too.
 matrix --write-hashes
 ((code == 0)) || fail "exit code $code of --write-hashes"
-expect "17 images, 17 of them new or changed"
+expect "20 renders of 17 images, 20 of them new or changed"
 real=$root/tests/portability/renders.csv
 cut -d, -f1,2 "$real" | diff - <(cut -d, -f1,2 "$build/renders.csv") || fail "$real lacks images; tools/portability --write-hashes"
 proved=0
-while IFS=, read -r scene options hash; do
+while IFS=, read -r scene options hash counts; do
     name="$scene ${options#--format }"
     name=${name/--antialias /}
     known=$(sed -n "s/^${name/supersample/axes}: //p" "$root/host/verify/pictures.txt")
     [[ -z $known || $known == "$hash" ]] || fail "$name: $hash in $real, $known in host/verify/pictures.txt"
+    rays=$(awk -v name="${name/supersample/axes}: " 'index($0, name) == 1 { here = 1 } here && sub(/^counts ring: /, "") { print; exit }' \
+        "$root/host/verify/pictures.txt" | sed 's/[^0-9]*\([0-9]*\)/\1,/g')
+    [[ -z $known || $counts == "$(cut -d, -f1-10 <<<"$rays"),"* ]] || fail "$name: $counts in $real, $rays in host/verify/pictures.txt"
     proved=$((proved + ${#known} / 32))
 done < <(grep -v '^#' "$real")
 ((proved == 7)) || fail "$proved images of $real are in host/verify/pictures.txt, not 7"
@@ -67,12 +73,17 @@ matrix --only "PoCL loopvec" --checks renders
 ((code == 1)) || fail "exit code $code where the only implementation makes another image"
 expect "11111111111111111111111111111111; right: 5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a"
 rm "$build/raya.hash"
+echo 6 >"$build/raya.reflected"
+matrix --only "PoCL loopvec" --checks renders
+((code == 1)) || fail "exit code $code where the only implementation counts otherwise"
+expect "spheres --format fp32 --accel grid: wrong counts: reflected is 6, right: 5"
+rm "$build/raya.reflected"
 sed -i '/cones,--format spa22/d' "$build/renders.csv"
 matrix --only "PoCL loopvec" --checks renders
 ((code == 1)) || fail "exit code $code where a hash is missing"
 expect "right: not in renders.csv, see --write-hashes"
 matrix --write-hashes
-expect "17 images, 1 of them new or changed"
+expect "20 renders of 17 images, 1 of them new or changed"
 
 # What a CI job sets for itself must not choose here.
 export RAYA_BUILD_OPTIONS=-cl-opt-disable POCL_DEVICES=basic OCL_ICD_VENDORS=/nowhere RAYA_NUMBER_CASES=1
