@@ -72,6 +72,12 @@ std::string expand_kernel_source(const std::string& text, const std::string& nam
     return source;
 }
 
+void check_folder(const KernelSources& sources) {
+    constexpr std::string_view kKernels = "kernels/";
+    for (const auto& [name, text] : embedded_files())
+        if (name.starts_with(kKernels) && name.ends_with(".cl")) kernel_source(name.substr(kKernels.size()), sources);
+}
+
 void check_patches(const KernelSources& sources) {
     for (const SourcePatch& patch : sources.patches) kernel_file(patch.file, sources);
 }

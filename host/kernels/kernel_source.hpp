@@ -27,6 +27,9 @@ std::string kernel_source(const std::string& file, const KernelSources& sources 
 /// The same for a `text` that is no file of kernels/; `name` stands for it in a build log, patches leave it alone.
 std::string expand_kernel_source(const std::string& text, const std::string& name, const KernelSources& sources = {});
 
+/// UserError unless every kernel of the program is in the folder, with all that it includes.
+void check_folder(const KernelSources& sources);
+
 /// Throws as kernel_file() does unless every patch fits its file: before something that takes exceptions for a fault
 /// seen.
 void check_patches(const KernelSources& sources);

@@ -18,8 +18,8 @@ bool says_any(const std::string& message, const std::vector<const char*>& words)
                        [&](const char* word) { return message.find(word) != std::string::npos; });
 }
 
-// What to try after a failure that was thrown, by what the message says.
-std::vector<std::string> remedies_for(const std::string& message) {
+// What to try after a failure that was thrown, by what the message says; `by_device`: a DeviceError.
+std::vector<std::string> remedies_for(const std::string& message, bool by_device) {
     const std::string newer = "a newer driver, or another OpenCL implementation for this device (raya devices)";
     if (says_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
                            "CL_OUT_OF_", "bad_alloc"}))
@@ -35,23 +35,25 @@ std::vector<std::string> remedies_for(const std::string& message) {
         all.insert(all.end(), more.begin(), more.end());
         return all;
     }
-    return {"raya devices: is this the device that you mean?", newer};
+    if (by_device) return {"raya devices: is this the device that you mean?", newer};
+    return {"are checks of \"number\", \"geometry\" or \"machine\" wrong too? then those first",
+            "else this is an error in raya: tell its authors"};
 }
 
 Verdict verdict_of(const std::function<Verdict()>& body) {
-    const auto broken = [](const std::string& message) {
+    const auto broken = [](const std::string& message, bool by_device) {
         const std::size_t end = message.find('\n');
         Fault fault;
         if (end != std::string::npos) fault.where = message.substr(end + 1);
-        fault.remedies = remedies_for(message.substr(0, end));
+        fault.remedies = remedies_for(message.substr(0, end), by_device);
         return failed(message.substr(0, end), fault);
     };
     try {
         return body();
     } catch (const DeviceError& error) {
-        return broken(error.what());
+        return broken(error.what(), true);
     } catch (const std::exception& error) {
-        return broken(std::string("the check could not be done: ") + error.what());
+        return broken(std::string("the check could not be done: ") + error.what(), false);
     }
 }
 

@@ -1,5 +1,6 @@
 // raya verify, as a user sees it.
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
@@ -40,6 +41,31 @@ TEST_CASE("verify ends with 4 where a check fails, and says what and why", "[cli
         for (const char* key : {"where", "expected", "got"}) CHECK(check[key] != "");
     }
     CHECK(failures == 2);
+}
+
+TEST_CASE("a folder that lacks a kernel is refused before any check", "[cli][verify]") {
+    const ScratchFolder scratch, empty, outputs;
+    const std::string partial = write_kernels(scratch / "kernels");
+    REQUIRE(std::filesystem::remove(std::filesystem::path(partial) / "shading/light.clh"));
+    for (const std::string& folder : {empty.path().string(), (empty / "missing").string(), partial})
+        check_refused(outputs, {"verify", "--only", "bus", "--kernel-dir", folder, "--report", outputs / "report.json"},
+                      2, {folder, "cannot read kernel file", "--kernel-dir must be a folder like"});
+}
+
+TEST_CASE("a wrong count of own kernels ends verify with 4, and the advice names the kernels alone", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string file = scratch / "report.json";
+    const std::string kernels = write_kernels(scratch / "kernels", {kCountFaults.front().patch});
+    const RunOutcome run = run_raya({"verify", "--only", kOnGlass, "--kernel-dir", kernels, "--report", file});
+    INFO(run.told());
+    CHECK(run.code == 4);
+    CHECK_THAT(run.out, Catch::Contains("wrong counts: reflected, refracted, cycles, pixel_cycles") &&
+                            Catch::Contains("expected      reflected 497, refracted 422, cycles ") &&
+                            Catch::Contains("got           reflected 919, refracted 0, cycles "));
+    const Document check = Document::parse(file_contents(file))["devices"][0]["checks"][0];
+    REQUIRE(check["remedies"].size() == 1);
+    CHECK_THAT(check["remedies"][0].get<std::string>(),
+               Catch::StartsWith("raya verify without --kernel-dir") && !Catch::Contains("driver"));
 }
 
 TEST_CASE("a brief verify takes few rays, and those of reduced formats without the grid", "[cli][verify]") {

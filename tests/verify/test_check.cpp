@@ -35,7 +35,9 @@ TEST_CASE("a check that throws has failed, with what fits the reason", "[verify]
                Contains("memory is short") && !Contains("build log"));
     CHECK_THAT(remedies_after<DeviceError>("'x': clFinish failed with CL_DEVICE_NOT_AVAILABLE (-2)"),
                Contains("the device was lost") && !Contains("memory"));
-    CHECK_THAT(remedies_after<std::logic_error>("another reason"), Contains("raya devices"));
+    CHECK_THAT(remedies_after<DeviceError>("another reason"), Contains("raya devices") && Contains("driver"));
+    CHECK_THAT(remedies_after<std::logic_error>("400 packets of kind 1 were made, 399 ended"),
+               Contains("tell its authors") && !Contains("driver"));
 }
 
 TEST_CASE("what is tried already is no remedy", "[verify]") {
