@@ -11,6 +11,7 @@
 #include "host/cl/driver_cache.hpp"
 #include "host/cl/driver_call.hpp"
 #include "host/cl/error_names.hpp"
+#include "host/files/module.hpp"
 #include "host/files/verbosity.hpp"
 
 namespace raya {
@@ -162,11 +163,12 @@ DeviceInfo device_info(const cl::Device& device) {
 
 std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t turn) {
     if (devices.empty()) {
-        throw DeviceError(
-            "no OpenCL device found; remedy: install a driver (Debian: apt install pocl-opencl-icd), look at the "
+        const std::string limit = memory_limit();
+        throw DeviceError(fmt::format(
+            "no OpenCL device found; remedy: {}install a driver (Debian: apt install pocl-opencl-icd), look at the "
             "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists; PoCL shows none where "
-            "it may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME), and under a limit of memory "
-            "(ulimit -v)");
+            "it may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME)",
+            limit.empty() ? "" : fmt::format("raise {}, in which a driver may not fit, ", limit)));
     }
     const std::string one = entry_of(wanted, turn);
     if (one.empty()) return default_index(devices, turn);

@@ -107,8 +107,9 @@ std::string error_remedy(cl_int code) {
             return "the driver cannot compile kernels: choose another device";
         case -4:
         case -5:
-        case -6:
             return "the device lacks memory or registers for it: fewer pixels, smaller work-groups, or another device";
+        case -6:
+            return "the host lacks memory for it: raise a limit on it (ulimit -v), or render fewer pixels";
         case -8:
             return "copy between two buffers, or between parts of one that do not overlap";
         case -11:

@@ -1,5 +1,6 @@
 #include "host/cli/commands.hpp"
 
+#include <cxxabi.h>
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
@@ -8,9 +9,12 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <typeinfo>
 #include <vector>
 
 #include "host/cl/driver_call.hpp"
@@ -31,6 +35,9 @@ namespace {
 constexpr int kExitBug = 1;
 constexpr int kExitCheckFailed = 4;
 
+constexpr const char* kOutOfMemory =
+    "out of memory on the host; remedy: fewer pixels, a smaller scene, or more memory (ulimit -v)";
+
 constexpr const char* kExitCodes =
     "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 a fault of raya's own.";
 constexpr const char* kEnvironment =
@@ -42,6 +49,19 @@ constexpr const char* kEnvironment =
     "  RAYA_MPIRUN         the command with which bench --ranks starts ranks; default: mpirun --bind-to none\n"
     "  RAYA_RANK_TIMEOUT   seconds that a rank waits for the others; default: 600\n"
     "  XDG_CACHE_HOME      what bench --tune keeps lies in raya/ there; default: ~/.cache";
+
+/// Of std::terminate(): memory also ends where no handler is, in a destructor, in a thread or before main().
+[[noreturn]] void end_uncaught() {
+    const std::type_info* const thrown = abi::__cxa_current_exception_type();
+    if (thrown == nullptr || *thrown != typeid(std::bad_alloc)) __gnu_cxx::__verbose_terminate_handler();
+    remove_files_in_progress();
+    for (const std::string_view part : {"raya: ", kOutOfMemory, "\n"})
+        if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
+    ::_exit(kExitUserError);
+}
+
+// Before CLI11's own objects are made, which allocate.
+[[gnu::constructor(101)]] void handle_uncaught() { std::set_terminate(end_uncaught); }
 
 /// The next files to be opened would be taken for those that are closed. Nothing can be written to a descriptor for
 /// reading, so that what is lost on stdout is seen.
@@ -66,8 +86,7 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     } catch (const CheckFailure& failure) {
         return failure.summary.empty() ? kExitCheckFailed : ranks.fail(failure.summary, kExitCheckFailed);
     } catch (const std::bad_alloc&) {
-        return ranks.fail("out of memory on the host; remedy: fewer pixels, a smaller scene, or more memory",
-                          kExitUserError);
+        return ranks.fail(kOutOfMemory, kExitUserError);
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0) return kExitOk;  // it is what could not be printed
         return ranks.fail(std::string("internal error: ") + error.what(), kExitBug);

@@ -15,8 +15,12 @@ struct ModuleNeeds : ModuleError {
     using ModuleError::ModuleError;
 };
 
+/// "the limit of 488 MB on memory (ulimit -v)", under which libraries may not load; empty where there is none.
+std::string memory_limit();
+
 /// The function `symbol` of the module `name` (a file NAME.so), which stays loaded. It is looked for beside the
-/// program, in ../lib/raya/ and .. from there. Throws ModuleError.
+/// program, in ../lib/raya/ and .. from there. Throws ModuleError; UserError where a limit on
+/// memory is in the way.
 void* module_function(const std::string& name, const char* symbol);
 
 }  // namespace raya

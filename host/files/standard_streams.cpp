@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -44,7 +43,7 @@ void keep_stdout_for_file() {
     std::fflush(stdout);
     kept_stdout = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     if (kept_stdout < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
-        throw std::runtime_error("cannot keep stdout for a file: " + std::generic_category().message(errno));
+        throw UserError("cannot keep stdout for a file: " + std::generic_category().message(errno));
 }
 
 bool stdout_is_for_file() { return kept_stdout != kNone; }

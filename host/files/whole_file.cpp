@@ -115,21 +115,26 @@ int write_and_close(int descriptor, const Next& next) {
             error = errno;
         if (bytes.empty()) bytes = next();
     }
-    if (::close(descriptor) != 0 && error == 0) error = errno;  // network file systems report a full disk only here
+    // Network file systems report a full disk only here. EINTR: Linux has closed it all the same.
+    if (::close(descriptor) != 0 && error == 0 && errno != EINTR) error = errno;
     return error;
 }
 
-/// A new file beside `target`, which an interruption removes. The name is short, so that it fits wherever the target's
-/// own name does.
+/// A new file in the folder of `target`; unless it is renamed it goes with this object, or by an interruption. The name
+/// is short, so that it fits wherever the target's own name does.
 struct TemporaryFile {
     fs::path path;
     FileInProgress in_progress;  // before the file exists: an interruption may come at any time
     int descriptor;
+    bool renamed = false;
 
     explicit TemporaryFile(const fs::path& name)
         : path(name),
           in_progress(path),
           descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode)) {}
+    ~TemporaryFile() {
+        if (descriptor >= 0 && !renamed) ::unlink(path.c_str());
+    }
 };
 
 std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::path& shown) {
@@ -138,12 +143,13 @@ std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::
         auto file =
             std::make_unique<TemporaryFile>(folder_of(target) / fmt::format(".raya-{}-{}.tmp", ::getpid(), counter++));
         if (file->descriptor >= 0) return file;
-        if (errno != EEXIST) refuse(shown, errno);
+        if (errno != EEXIST && errno != EINTR) refuse(shown, errno);
     }
 }
 
 void write_direct(const fs::path& path, const Next& next) {
     const int descriptor = is_standard_stream(path) ? take_stdout() : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // of a pipe that waited for its reader
     if (descriptor < 0) refuse(path, errno);
     if (const int error = write_and_close(descriptor, next)) refuse(path, error);
 }
@@ -165,11 +171,9 @@ void write_whole_file(const fs::path& path, const std::function<std::string_view
     const Target target = checked_target(path);
     if (target.direct) return write_direct(path, next);
     const auto temporary = open_temporary(target.file, path);
-    int error = write_and_close(temporary->descriptor, next);
-    if (error == 0 && std::rename(temporary->path.c_str(), target.file.c_str()) != 0) error = errno;
-    if (error == 0) return;
-    ::unlink(temporary->path.c_str());
-    refuse(path, error);
+    if (const int error = write_and_close(temporary->descriptor, next)) refuse(path, error);
+    if (std::rename(temporary->path.c_str(), target.file.c_str()) != 0) refuse(path, errno);
+    temporary->renamed = true;
 }
 
 }  // namespace raya

@@ -1,11 +1,19 @@
-// A disk that is full: preloaded into raya (LD_PRELOAD), it lets files of one folder take so many bytes and no more.
+// A disk that fails: preloaded into raya (LD_PRELOAD).
 //   RAYA_FULL_DISK="1000000 /folder"    the files that are written there get 1,000,000 bytes together, then write()
-//   fails with ENOSPC
+//   fails with ENOSPC. As on a real disk the last write that finds room is cut short.
 //   RAYA_FULL_DISK="write /folder"      a write() there does half of its work and then does not return
 //   RAYA_FULL_DISK="rename /folder"     a rename() there does not return
-// As on a real disk the last write that finds room is cut short. Small disks can be mounted by root alone, and not in
-// every container.
+//   RAYA_WRITE_FAULT="17 28"            the 17th of raya's own calls that write fails with errno 28 (ENOSPC)
+//   RAYA_WRITE_FAULT="17 short"         the 17th writes half its bytes
+//   RAYA_WRITE_CALLS=FILE               a line for each of these calls is appended to FILE: its name, and "fails" for
+//                                       the one that does
+// Small disks can be mounted by root alone, and not in every container; no file system fails at a chosen call.
+// Counted are calls on regular files, of raya and of the C++ library, not of drivers.
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,9 +21,12 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+
+#include "tests/cli/calling_module.hpp"
 
 namespace {
 
@@ -52,24 +63,193 @@ bool is_there(int descriptor) {
     for (;;) ::pause();
 }
 
-}  // namespace
-
-extern "C" int rename(const char* from, const char* to) noexcept {
-    if (disk().stuck == "rename" && std::string(to).find(disk().folder) == 0) stay();
-    return reinterpret_cast<decltype(&::rename)>(::dlsym(RTLD_NEXT, "rename"))(from, to);
+template <class Function>
+Function* real(const char* name, Function*) {
+    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-extern "C" ssize_t write(int descriptor, const void* bytes, std::size_t count) {
-    static const auto real = reinterpret_cast<decltype(&::write)>(::dlsym(RTLD_NEXT, "write"));
-    if (!is_there(descriptor)) return real(descriptor, bytes, count);
-    if (disk().stuck == "rename") return real(descriptor, bytes, count);
-    if (disk().stuck == "write" && real(descriptor, bytes, count / 2) >= 0) stay();
+struct WriteFault {
+    long at = 0;  // 0: no call fails
+    int error = 0;
+    bool is_short = false;
+
+    WriteFault() {
+        const char* text = std::getenv("RAYA_WRITE_FAULT");
+        if (text == nullptr) return;
+        char* end = nullptr;
+        at = std::strtol(text, &end, 10);
+        error = std::atoi(end);
+        is_short = error == 0;
+    }
+};
+
+const WriteFault& write_fault() {
+    static const WriteFault fault;
+    return fault;
+}
+
+void note(const char* call, bool fails) {
+    static const char* const file = std::getenv("RAYA_WRITE_CALLS");
+    if (file == nullptr) return;
+    const int descriptor = real("open", &::open)(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    const std::string line = std::string(call) + (fails ? " fails\n" : "\n");
+    real("write", &::write)(descriptor, line.data(), line.size());
+    real("close", &::close)(descriptor);
+}
+
+bool is_of_raya(const void* caller) {
+    std::uintptr_t base = 0;
+    const char* const module = raya::module_of(reinterpret_cast<std::uintptr_t>(caller) - 1, base);
+    return module != nullptr && (raya::is_raya(module) || raya::begins_with(module, "libstdc++"));
+}
+
+/// Whether the next call fails; `can_be`: it can be short, or be interrupted (man 2 of each says which).
+bool next_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
+    static std::atomic<long> calls{0};
+    const WriteFault& fault = write_fault();
+    const bool now =
+        ++calls == fault.at && (!fault.is_short || can_be_short) && (fault.error != EINTR || can_be_interrupted);
+    note(call, now);
+    if (now) errno = fault.error;
+    return now;
+}
+
+/// The same for a call of raya's; that of another library succeeds.
+bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
+    return is_of_raya(caller) && next_fails(call, can_be_short, can_be_interrupted);
+}
+
+/// Whether it is a file, and not the one that stderr goes to.
+bool is_file(int descriptor) {
+    struct stat status {
+    }, messages{};
+    const int kept = errno;
+    const bool is = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+    const bool is_stderr = ::fstat(STDERR_FILENO, &messages) == 0 && messages.st_ino == status.st_ino;
+    errno = kept;
+    return is && !is_stderr;
+}
+
+bool is_written(int descriptor) {
+    return is_file(descriptor) && (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
+}
+
+bool may_write(int flags) { return (flags & O_ACCMODE) != O_RDONLY || (flags & O_CREAT) != 0; }
+
+ssize_t write_some(int descriptor, const void* bytes, std::size_t count) {
+    static auto* const next = real("write", &::write);
+    if (!is_there(descriptor) || disk().stuck == "rename") return next(descriptor, bytes, count);
+    if (disk().stuck == "write" && next(descriptor, bytes, count / 2) >= 0) stay();
     const long long room = disk().room;
     if (room <= 0 && count > 0) {
         errno = ENOSPC;
         return -1;
     }
-    const ssize_t written = real(descriptor, bytes, std::min(count, static_cast<std::size_t>(room)));
+    const ssize_t written = next(descriptor, bytes, std::min(count, static_cast<std::size_t>(room)));
     disk().room -= std::max<ssize_t>(written, 0);
     return written;
 }
+
+/// The C library writes stdout by itself, where no preloaded write() is called.
+ssize_t write_stdout(void*, const char* bytes, std::size_t count) {
+    static auto* const next = real("write", &::write);
+    if (is_file(STDOUT_FILENO) && next_fails("stdout", false, true)) return 0;
+    return std::max<ssize_t>(next(STDOUT_FILENO, bytes, count), 0);
+}
+
+[[gnu::constructor]] void replace_stdout() {
+    if (std::getenv("RAYA_WRITE_FAULT") == nullptr) return;
+    cookie_io_functions_t functions{};
+    functions.write = write_stdout;
+    stdout = ::fopencookie(nullptr, "w", functions);
+}
+
+}  // namespace
+
+#define CALLER __builtin_return_address(0)
+
+extern "C" {
+
+ssize_t write(int descriptor, const void* bytes, std::size_t count) {
+    if (is_file(descriptor) && fails("write", CALLER, count > 1, true)) {
+        if (!write_fault().is_short) return -1;
+        count /= 2;
+    }
+    return write_some(descriptor, bytes, count);
+}
+
+ssize_t writev(int descriptor, const iovec* parts, int count) {
+    if (is_file(descriptor) && fails("writev", CALLER, count > 1, true)) {
+        if (!write_fault().is_short) return -1;
+        count /= 2;
+    }
+    return real("writev", &::writev)(descriptor, parts, count);
+}
+
+ssize_t pwrite(int descriptor, const void* bytes, std::size_t count, off_t at) {
+    if (is_file(descriptor) && fails("pwrite", CALLER, count > 1, true)) {
+        if (!write_fault().is_short) return -1;
+        count /= 2;
+    }
+    return real("pwrite", &::pwrite)(descriptor, bytes, count, at);
+}
+
+int open(const char* path, int flags, ...) {
+    std::va_list more;
+    va_start(more, flags);
+    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
+    va_end(more);
+    if (may_write(flags) && fails("open", CALLER, false, true)) return -1;
+    return real("open", &::open)(path, flags, mode);
+}
+
+int open64(const char* path, int flags, ...) {
+    std::va_list more;
+    va_start(more, flags);
+    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
+    va_end(more);
+    if (may_write(flags) && fails("open", CALLER, false, true)) return -1;
+    return real("open64", &::open64)(path, flags, mode);
+}
+
+int close(int descriptor) {
+    const bool fails_now = is_written(descriptor) && fails("close", CALLER, false, true);
+    const int error = errno;
+    const int closed = real("close", &::close)(descriptor);  // Linux closes it, whatever it reports
+    if (!fails_now) return closed;
+    errno = error;
+    return -1;
+}
+
+int fsync(int descriptor) { return fails("fsync", CALLER, false, true) ? -1 : real("fsync", &::fsync)(descriptor); }
+
+int fdatasync(int descriptor) {
+    return fails("fdatasync", CALLER, false, true) ? -1 : real("fdatasync", &::fdatasync)(descriptor);
+}
+
+int ftruncate(int descriptor, off_t length) noexcept {
+    return fails("ftruncate", CALLER, false, true) ? -1 : real("ftruncate", &::ftruncate)(descriptor, length);
+}
+
+int flock(int descriptor, int operation) noexcept {
+    return fails("flock", CALLER, false, true) ? -1 : real("flock", &::flock)(descriptor, operation);
+}
+
+int rename(const char* from, const char* to) noexcept {
+    if (disk().stuck == "rename" && std::string(to).find(disk().folder) == 0) stay();
+    return fails("rename", CALLER, false, false) ? -1 : real("rename", &::rename)(from, to);
+}
+
+int mkdir(const char* path, mode_t mode) noexcept {
+    return fails("mkdir", CALLER, false, false) ? -1 : real("mkdir", &::mkdir)(path, mode);
+}
+
+char* mkdtemp(char* path) noexcept {
+    return fails("mkdtemp", CALLER, false, false) ? nullptr : real("mkdtemp", &::mkdtemp)(path);
+}
+
+int dup2(int from, int to) noexcept {
+    return fails("dup2", CALLER, false, true) ? -1 : real("dup2", &::dup2)(from, to);
+}
+
+}  // extern "C"

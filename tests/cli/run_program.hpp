@@ -44,6 +44,7 @@ struct Surroundings {
     std::vector<std::pair<std::string, std::string>> variables{};  // set, on top of this process's own
     bool as_nobody = false;    // if this process is root's, run as a user whom permissions bind
     rlim_t largest_file = 0;   // bytes that a file may grow to, 0: any; a longer one fails as a full disk does
+    rlim_t memory = 0;         // bytes of address space that it may take, 0: any
     std::string error_file{};  // what stderr goes to, so that it is not seen in the outcome; empty: to be seen
     int signal = 0;            // sent to the program, unless it has ended before
     int signal_after_ms = 0;   // after it has begun to handle that signal, and `signal_when` is true
@@ -110,6 +111,11 @@ inline void limit_files(rlim_t bytes) {
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
 }
 
+inline void limit_memory(rlim_t bytes) {
+    const rlimit limit{bytes, bytes};
+    if (bytes != 0 && ::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(126);
+}
+
 /// Whether the child is raya by now and has a handler for the signal (SigCgt of proc(5)); before, it has this
 /// process's.
 inline bool catches(pid_t child, int signal) {
@@ -167,6 +173,7 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const Surrounding
         detail::open_stream(around.error_file, STDERR_FILENO);
         detail::limit_files(around.largest_file);
         if (around.as_nobody) detail::leave_root();
+        detail::limit_memory(around.memory);
         ::fexecve(program, argv.data(), envp.data());
         ::_exit(127);
     }

@@ -28,7 +28,7 @@ TEST_CASE("a device that runs out of memory ends with buffer, error and remedy",
           std::pair("5 -6", "CL_OUT_OF_HOST_MEMORY")}) {
         CAPTURE(fault);
         check_refused(outputs, small_render(outputs), 3,
-                      {"allocating buffer '", "bytes)", name, "remedy: the device lacks memory", "fewer pixels"},
+                      {"allocating buffer '", "bytes)", name, " lacks memory", "fewer pixels"},
                       failing_device(std::string("clCreateBuffer ") + fault));
     }
     // Drivers that take memory at the first use of a buffer say so at the launch.
@@ -88,6 +88,49 @@ TEST_CASE("a host that runs out of memory ends with the remedy", "[cli]") {
     else
         check_refused(outputs, options, 2, {"raya: out of memory on the host; remedy: fewer pixels"},
                       failing_device("new 1000000 0"));
+}
+
+TEST_CASE("memory that ends anywhere in raya ends it with a message", "[cli]") {
+    if (kSanitized) {
+        WARN("skipped: the sanitizer has an allocator of its own");
+        return;
+    }
+    const auto outputs_of = [](const std::string& number) {
+        const ScratchFolder outputs;
+        const RunOutcome run =
+            run_raya(small_render(outputs),
+                     {.variables = {{"LD_PRELOAD", RAYA_MEMORY_FAULTS}, {"RAYA_MEMORY_FAULT", "=" + number}}});
+        CAPTURE(number, run.told());
+        CHECK(run.code == 2);
+        CHECK_THAT(run.err, Catch::Contains("raya: out of memory on the host"));
+        return outputs.entries();
+    };
+    // Before main(), while the options are made, while they are read, in the render.
+    for (const char* number : {"1", "100", "1000", "10000", "20000"}) CHECK(outputs_of(number) == 0);
+}
+
+TEST_CASE("a limit on memory in which a library does not fit is named", "[cli]") {
+    if (kSanitized) {
+        WARN("skipped: the sanitizer takes more memory than any limit");
+        return;
+    }
+    const ScratchFolder outputs;
+    const Surroundings around{.memory = 100 << 20};
+    const auto render = [&](const std::string& image) {
+        return run_raya({"render", scene_file("planes"), "--size", "16", "-o", outputs / image}, around);
+    };
+    for (const char* image : {"x.png", "x.exr"}) {
+        const RunOutcome run = render(image);
+        INFO(run.told());
+        CHECK(run.code == 2);
+        CHECK_THAT(run.err, Catch::Contains("out of memory") &&
+                                Catch::Contains("raise the limit of 100 MB on memory") && !Catch::Contains("install"));
+    }
+    const RunOutcome run = render("x.ppm");
+    INFO(run.told());
+    CHECK(run.code == 3);
+    CHECK_THAT(run.err, Catch::Contains("no OpenCL device found; remedy: raise the limit of 100 MB on memory"));
+    CHECK(outputs.entries() == 0);
 }
 
 TEST_CASE("without a fault the same runs end well: the tests above can fail", "[cli]") {

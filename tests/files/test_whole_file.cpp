@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <string>
+#include <string_view>
 
 #include "host/error.hpp"
 #include "host/files/whole_file.hpp"
@@ -81,6 +83,20 @@ TEST_CASE("write_whole_file takes a file in pieces", "[whole_file]") {
     CHECK(written.size() == 10 * 2 + 90 * 3 + 900 * 4);
     write_whole_file(folder / "a", "");
     CHECK(contents(folder / "a").empty());
+}
+
+TEST_CASE("pieces that cannot be made leave the old file and no temporary one", "[whole_file]") {
+    const ScratchFolder folder;
+    const fs::path file = folder / "x";
+    write_whole_file(file, "old");
+    int asked = 0;
+    const auto next = [&]() -> std::string_view {
+        if (++asked == 3) throw std::bad_alloc();
+        return "new";
+    };
+    CHECK_THROWS_AS(write_whole_file(file, next), std::bad_alloc);
+    CHECK(contents(file) == "old");
+    CHECK(folder.entries() == 1);
 }
 
 TEST_CASE("write_whole_file gives the permissions that any new file gets", "[whole_file]") {

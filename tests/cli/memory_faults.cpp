@@ -1,0 +1,181 @@
+// A host that runs out of memory: preloaded into raya (LD_PRELOAD), it lets one allocation fail.
+//   RAYA_MEMORY_SITES=FILE      writes a line for each allocation site at the end: its number, how often it was
+//   reached,
+//                               its return addresses; and "elsewhere" with the number of allocations of other libraries
+//   RAYA_MEMORY_FAULT=1f2e      the first allocation at the site of that number fails
+//   RAYA_MEMORY_FAULT==17       the 17th allocation in raya fails
+//   RAYA_MEMORY_FAULT=+17       the 17th allocation elsewhere fails
+// Where one fails, FILE of RAYA_MEMORY_FAILED is created: a run can then be told from one that did not get there.
+// A site is the innermost return addresses in raya and its modules, where no other library but those that allocate on
+// the caller's account (the C and C++ libraries, fmt, zlib) lies between them and the allocation.
+#include <fcntl.h>
+#include <unistd.h>
+#include <unwind.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/cli/calling_module.hpp"
+
+extern "C" {
+void* __libc_malloc(std::size_t bytes);
+void* __libc_calloc(std::size_t count, std::size_t bytes);
+void* __libc_realloc(void* memory, std::size_t bytes);
+void* __libc_memalign(std::size_t alignment, std::size_t bytes);
+}
+
+namespace {
+
+constexpr std::size_t kDepth = 3;  // return addresses of a site: one would not tell the callers of a template apart
+constexpr std::size_t kSlots = 1 << 16;
+
+using Site = std::array<std::uintptr_t, kDepth>;
+
+struct Slot {
+    std::atomic<std::uint64_t> number{0};  // 0: free
+    std::atomic<std::uint64_t> count{0};
+    Site site{};
+};
+
+std::array<Slot, kSlots> slots;
+std::atomic<std::uint64_t> in_raya{0}, elsewhere{0};
+std::atomic<bool> failed{false};
+__thread bool busy __attribute__((tls_model("initial-exec"))) = false;  // what runs below allocates nothing of its own
+
+enum class Module { kOwn, kRaya, kSupport, kOther };
+
+Module module_of(std::uintptr_t address, std::uintptr_t& base) {
+    const char* const name = raya::module_of(address, base);
+    if (name == nullptr) return Module::kOther;
+    if (raya::is_raya(name)) return Module::kRaya;
+    for (const char* support : {"libstdc++", "libc.so", "libfmt", "libz.so", "libxxhash", "ld-linux"})
+        if (raya::begins_with(name, support)) return Module::kSupport;
+    return raya::begins_with(name, "libmemory_faults") ? Module::kOwn : Module::kOther;
+}
+
+struct Walk {
+    Site site{};
+    std::size_t frames = 0;
+};
+
+_Unwind_Reason_Code look(_Unwind_Context* context, void* data) {
+    Walk& walk = *static_cast<Walk*>(data);
+    std::uintptr_t base = 0;
+    const std::uintptr_t address = _Unwind_GetIP(context);
+    const Module module = module_of(address - 1, base);
+    if (module == Module::kOther) return _URC_END_OF_STACK;
+    if (module == Module::kRaya) walk.site[walk.frames++] = address - base;
+    return walk.frames == kDepth ? _URC_END_OF_STACK : _URC_NO_REASON;
+}
+
+std::uint64_t number_of(const Site& site) {
+    std::uint64_t hash = 14695981039346656037ull;  // FNV-1a, by words
+    for (const std::uintptr_t address : site) hash = (hash ^ address) * 1099511628211ull;
+    return hash | 1;
+}
+
+void record(std::uint64_t number, const Site& site) {
+    for (std::size_t at = number % kSlots;; at = (at + 1) % kSlots) {
+        std::uint64_t held = 0;
+        if (slots[at].number.compare_exchange_strong(held, number)) slots[at].site = site;
+        if (held != 0 && held != number) continue;
+        ++slots[at].count;
+        return;
+    }
+}
+
+bool fails_now() {
+    if (failed.exchange(true)) return false;
+    if (const char* file = std::getenv("RAYA_MEMORY_FAILED")) ::close(::open(file, O_CREAT | O_WRONLY, 0666));
+    errno = ENOMEM;
+    return true;
+}
+
+/// What RAYA_MEMORY_FAULT asks for.
+struct Fault {
+    char kind = '\0';  // of the number: '=' or '+', else that of a site
+    std::uint64_t number = 0;
+
+    Fault() {
+        const char* text = std::getenv("RAYA_MEMORY_FAULT");
+        if (text == nullptr) return;
+        const bool counts = *text == '=' || *text == '+';
+        kind = counts ? *text : ' ';
+        number = std::strtoull(text + counts, nullptr, counts ? 10 : 16);
+    }
+};
+
+bool is_in_raya(const void* caller, Walk& walk) {
+    std::uintptr_t base = 0;
+    const Module module = module_of(reinterpret_cast<std::uintptr_t>(caller) - 1, base);
+    if (module == Module::kRaya || module == Module::kSupport) {
+        busy = true;
+        _Unwind_Backtrace(&look, &walk);
+        busy = false;
+    }
+    return walk.frames > 0;
+}
+
+bool fails(const void* caller) {
+    static const Fault fault;
+    static const bool lists = std::getenv("RAYA_MEMORY_SITES") != nullptr;
+    if (busy || (fault.kind == '\0' && !lists) || failed.load(std::memory_order_relaxed)) return false;
+    Walk walk;
+    const bool raya = is_in_raya(caller, walk);
+    const std::uint64_t count = ++(raya ? in_raya : elsewhere), number = number_of(walk.site);
+    if (raya && lists) record(number, walk.site);
+    const bool wanted =
+        fault.kind == ' ' ? raya && number == fault.number : count == fault.number && fault.kind == (raya ? '=' : '+');
+    return wanted && fails_now();
+}
+
+struct AtTheEnd {
+    ~AtTheEnd() {
+        busy = true;  // what is written here allocates
+        const char* file = std::getenv("RAYA_MEMORY_SITES");
+        const int descriptor = file != nullptr ? ::open(file, O_CREAT | O_WRONLY | O_TRUNC, 0666) : -1;
+        if (descriptor < 0) return;
+        for (const Slot& slot : slots) {
+            if (slot.number == 0) continue;
+            ::dprintf(descriptor, "%lx %lu", slot.number.load(), slot.count.load());
+            for (const std::uintptr_t address : slot.site) ::dprintf(descriptor, " %lx", address);
+            ::dprintf(descriptor, "\n");
+        }
+        ::dprintf(descriptor, "elsewhere %lu\n", elsewhere.load());
+        ::close(descriptor);
+    }
+} at_the_end;
+
+}  // namespace
+
+extern "C" {
+
+void* malloc(std::size_t bytes) { return fails(__builtin_return_address(0)) ? nullptr : __libc_malloc(bytes); }
+
+void* calloc(std::size_t count, std::size_t bytes) {
+    return fails(__builtin_return_address(0)) ? nullptr : __libc_calloc(count, bytes);
+}
+
+void* realloc(void* memory, std::size_t bytes) {
+    return fails(__builtin_return_address(0)) ? nullptr : __libc_realloc(memory, bytes);
+}
+
+void* memalign(std::size_t alignment, std::size_t bytes) {
+    return fails(__builtin_return_address(0)) ? nullptr : __libc_memalign(alignment, bytes);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t bytes) {
+    return fails(__builtin_return_address(0)) ? nullptr : __libc_memalign(alignment, bytes);
+}
+
+int posix_memalign(void** memory, std::size_t alignment, std::size_t bytes) {
+    if (fails(__builtin_return_address(0))) return ENOMEM;
+    *memory = __libc_memalign(alignment, bytes);
+    return *memory != nullptr ? 0 : ENOMEM;
+}
+
+}  // extern "C"

@@ -1,0 +1,169 @@
+// Each of raya's calls that write fails once (disk_faults.cpp): what can be repeated is, and else the exit code is 2,
+// with a message; the file that was there stays, or the new one is there as a whole.
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+#include "tests/paths.h"
+#include "tests/thorough.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+using Files = std::map<std::string, std::string>;  // contents by name
+
+constexpr const char* kOld = "what was there before";
+
+struct Command {
+    std::string name;
+    Words arguments;         // with the folder before each file
+    bool replaces = true;    // files that are there
+    bool thorough = false;   // takes long
+    std::string input = "";  // file that it reads
+    bool prints = false;     // the same each time, without seconds
+};
+
+/// The commands that write files, in `folder`.
+std::vector<Command> commands(const std::string& folder) {
+    const auto file = [&](const std::string& name) { return folder + "/" + name; };
+    const auto render = [&](const Words& more) {
+        Words words = {"render", scene_file("centre"), "--size", "16", "--lanes", "4", "--format", "fp32"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const Words bench = {"bench", scene_file("centre"), "--size", "16", "--samples", "1", "--lanes",
+                         "4",     "--format",           "fp32"};
+    const auto bench_with = [&](const std::string& option, const std::string& name) {
+        Words words = bench;
+        words.insert(words.end(), {option, file(name)});
+        return words;
+    };
+    return {
+        {"generate", {"generate", "balls", "--level", "1", "-o", file("x.nff")}},
+        {"completion", {"completion", "bash", "-o", file("x.bash")}},
+        {"manual", {"manual", "render"}, true, false, "", true},
+        {"page", {"page", file("saved.json"), "-o", file("x.html")}, true, false, "saved.json"},
+        {"render", render({"-o", file("x.ppm"), "--report", file("x.json"), "--trace", file("t.json")})},
+        {"render -o -", render({"-o", "-"}), true, false, "", true},
+        {"keep",
+         render({"-o", file("x.ppm"), "--keep", file("s.rst"), "--keep-every", "0", "--pes", "4", "--group", "1"}),
+         false},
+        {"frames", render({"-o", file("x.ppm"), "--frames", "1:2", "--turn", "90"}), false},
+        {"cost", render({"-o", file("x.png"), "--cost", file("x.exr")}), true, true},
+        {"render --page", render({"-o", file("x.pfm"), "--page", file("x.html")}), true, true},
+        {"explore", {"explore", scene_file("centre"), "--size", "16", "-o", file("x.html")}, true, true},
+        {"bench --report", bench_with("--report", "x.json"), true, true},
+        {"bench --page", bench_with("--page", "x.html"), true, true},
+        {"verify",
+         {"verify", "--only", "machine bus", "--lanes", "4", "--report", file("x.json"), "--page", file("x.html")},
+         true,
+         true},
+    };
+}
+
+Files files_of(const fs::path& folder) {
+    Files files;
+    for (const auto& entry : fs::directory_iterator(folder))
+        files[entry.path().filename().string()] = file_contents(entry.path());
+    return files;
+}
+
+/// Whether a file is whole: equal to `expected`, but where it has times.
+bool is_whole(const std::string& name, const std::string& content, const Files& expected) {
+    if (name.ends_with(".rst")) return content.starts_with("raya");
+    if (!expected.contains(name)) return false;
+    if (name.ends_with(".json")) return Document::accept(content);
+    if (name.ends_with(".html")) return content.ends_with("</html>\n");
+    return content == expected.at(name);
+}
+
+struct Faulty {
+    RunOutcome run;
+    Words calls;  // "write", "open fails", ...
+    Files files;
+    std::string printed;  // where it is the same each time
+};
+
+/// Runs command `index` in a fresh folder; `fault` as RAYA_WRITE_FAULT has it, `old`: names of files that are there.
+Faulty run_with(std::size_t index, const std::string& fault, const Files& old, const std::string& saved) {
+    const ScratchFolder folder, notes;
+    const Command command = commands(folder.path().string())[index];
+    for (const auto& [name, content] : old) std::ofstream(folder / name) << kOld;
+    if (!command.input.empty()) std::ofstream(folder / command.input) << saved;
+    Faulty result;
+    result.run =
+        run_raya(command.arguments, {.variables = {{"LD_PRELOAD", RAYA_DISK_FAULTS},
+                                                   {"RAYA_WRITE_FAULT", fault},
+                                                   {"RAYA_WRITE_CALLS", notes / "calls"},
+                                                   {"ASAN_OPTIONS", "detect_leaks=0:verify_asan_link_order=0"}}});
+    std::ifstream calls(notes / "calls");
+    for (std::string line; std::getline(calls, line);) result.calls.push_back(line);
+    result.files = files_of(folder.path());
+    result.files.erase(command.input);
+    if (command.prints) result.printed = result.run.out;
+    return result;
+}
+
+void check_fault(const std::string& fault, const Faulty& one, const Faulty& good) {
+    const bool fails =
+        std::any_of(one.calls.begin(), one.calls.end(), [](auto& call) { return call.ends_with("fails"); });
+    const bool of_stdout = std::find(one.calls.begin(), one.calls.end(), "stdout fails") != one.calls.end();
+    const bool repeated = fault.ends_with(" short") || fault.ends_with(" " + std::to_string(EINTR));
+    INFO(one.run.told());
+    if (!fails || (repeated && !of_stdout)) {
+        CHECK(one.run.code == 0);
+        if (!good.printed.empty()) CHECK((one.run.out == good.printed));
+        REQUIRE(one.files.size() == good.files.size());
+    } else {
+        CHECK(one.run.code == 2);
+        const int error = std::stoi(fault.substr(fault.find(' ')));
+        const std::string reason = of_stdout ? "stdout" : std::generic_category().message(error);
+        CHECK_THAT(one.run.err, Catch::Contains("raya: cannot ") && Catch::Contains(reason));
+    }
+    for (const auto& [name, content] : one.files) {
+        CAPTURE(name);
+        CHECK((is_whole(name, content, good.files) || (one.run.code == 2 && content == kOld)));
+    }
+}
+
+TEST_CASE("a call that writes fails once: it is repeated, or the old file stays", "[cli]") {
+    const ScratchFolder folder;
+    const std::string report = folder / "x.json";
+    REQUIRE(run_raya({"render", scene_file("centre"), "--size", "16", "--lanes", "4", "-o", folder / "x.ppm",
+                      "--report", report})
+                .code == 0);
+    const std::string saved = file_contents(report);
+    const std::vector<std::string> errors = {std::to_string(ENOSPC), std::to_string(EIO), std::to_string(EINTR),
+                                             "short"};
+    const std::vector<Command> all = commands("");
+    for (std::size_t index = 0; index < all.size(); ++index) {
+        if (all[index].thorough && !thorough()) continue;
+        CAPTURE(all[index].name);
+        const Faulty good = run_with(index, "0 0", {}, saved);
+        INFO(good.run.told());
+        REQUIRE(good.run.code == 0);
+        REQUIRE(!good.calls.empty());
+        const Files old = all[index].replaces ? good.files : Files{};
+        std::size_t calls = 0;
+        for (std::size_t call = 1; call <= good.calls.size(); ++call) {
+            // Of a run of writes the first, the second and the last.
+            const auto is = [&](std::size_t at) { return at <= good.calls.size() ? good.calls[at - 1] : "end"; };
+            if (!thorough() && call > 2 && is(call) == is(call - 1) && is(call) == is(call + 1)) continue;
+            ++calls;
+            for (std::size_t error = 0; error < errors.size(); ++error) {
+                if (!thorough() && error != calls % errors.size()) continue;
+                const std::string fault = std::to_string(call) + " " + errors[error];
+                CAPTURE(fault, good.calls[call - 1]);
+                check_fault(fault, run_with(index, fault, old, saved), good);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""Lets one allocation of raya fail after another, and looks at how raya ends (tests/cli/memory_faults.cpp).
+
+    tests/tools/test_memory.py RAYA FAULTS CL_FAULTS [--sample N] [--seed S] [--log FILE] [--results FILE]
+
+RAYA is the program, FAULTS and CL_FAULTS are the libraries made of tests/cli/memory_faults.cpp and cl_faults.cpp.
+Without --sample every allocation site in raya fails once, in the first of the commands below that reaches it, and 200
+allocations elsewhere; that takes about an hour on one core. --log FILE keeps what has run, so that a run that was
+stopped continues there. --results FILE gets the summary that is committed as
+tests/limits/memory.csv. Exit code 1: a run ended in another way than it may, or left a file.
+"""
+import argparse
+import collections
+import csv
+import datetime
+import hashlib
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+SCENE = str(ROOT / "scenes" / "centre.nff")
+SMALL = ["render", SCENE, "--size", "16", "--lanes", "4", "--format", "fp32"]
+BANDS = ["render", SCENE, "--size", "16", "--lanes", "1", "--format", "fp32", "--pes", "4", "--group", "1",
+         "-o", "x.ppm", "--keep", "s.rst", "--keep-every", "0"]
+COMMANDS = {
+    "render": SMALL + ["-o", "x.ppm", "--report", "x.json", "--cost", "x.pfm", "--trace", "x.trace.json"],
+    "png": SMALL + ["-o", "x.png"],
+    "page": ["page", "saved.json", "-o", "x.html"],
+    "keep": BANDS,
+    "resume": BANDS + ["--resume"],
+}
+INPUTS = {"page": ["saved.json"], "resume": ["s.rst"]}
+ELSEWHERE = 200
+LIMIT_S = 120  # of a run that takes half a second on an idle machine
+
+
+def environment(**more):
+    names = {"RAYA_TUNED": "off", **more}
+    return {**os.environ, **names}
+
+
+class Trial:
+    """Runs of one program, each in a folder of its own."""
+
+    def __init__(self, options, folder):
+        self.raya = options.raya
+        self.faults = options.faults
+        self.folder = folder
+        self.inputs = folder / "inputs"
+        self.inputs.mkdir()
+        self.cache = os.environ.get("POCL_CACHE_DIR")
+        self.states = {}  # hash of a state that a run left -> whether it can be resumed
+        self.plain(SMALL + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
+        self.make_state(options.cl_faults)
+        self.expected = {name: self.expect(name) for name in COMMANDS}
+
+    def plain(self, arguments, inputs=(), **variables):
+        """The outcome and the files of a run in which nothing fails."""
+        with tempfile.TemporaryDirectory(dir=self.folder) as here:
+            for name in inputs:
+                shutil.copy(self.inputs / name, here)
+            done = subprocess.run([self.raya, *arguments], cwd=here, env=environment(**variables), capture_output=True,
+                                  timeout=LIMIT_S)
+            return done, files_of(here)
+
+    def make_state(self, cl_faults):
+        """A checkpoint: of a render whose device failed after it had been written."""
+        for launch in range(1, 50):
+            done, files = self.plain(BANDS, LD_PRELOAD=cl_faults, RAYA_FAULT=f"clEnqueueNDRangeKernel {launch} -5")
+            if done.returncode == 3 and "s.rst" in files:
+                (self.inputs / "s.rst").write_bytes(files["s.rst"])
+                return
+        raise AssertionError("no render that failed left a checkpoint")
+
+    def expect(self, name):
+        done, files = self.plain(COMMANDS[name], INPUTS.get(name, ()))
+        assert done.returncode == 0, done.stderr.decode()
+        return {file: comparable(file, content) for file, content in files.items()}
+
+    def sites(self, name):
+        """The numbers of the sites that the command reaches, in order, and its allocations elsewhere."""
+        listed = self.folder / "sites"
+        done, _ = self.plain(COMMANDS[name], INPUTS.get(name, ()), LD_PRELOAD=self.faults,
+                             RAYA_MEMORY_SITES=str(listed))
+        assert done.returncode == 0, done.stderr.decode()
+        rows = [line.split() for line in listed.read_text().splitlines()]
+        return sorted(row[0] for row in rows if row[0] != "elsewhere"), int(rows[-1][1])
+
+    def fail(self, name, fault):
+        """Lets one allocation fail. Returns how the run ended, and its exit code and message."""
+        elsewhere = fault.startswith("+")
+        with tempfile.TemporaryDirectory(dir=self.folder) as work:
+            here, mark, cache = Path(work, "run"), Path(work, "failed"), Path(work, "cache")
+            here.mkdir()
+            for file in INPUTS.get(name, ()):
+                shutil.copy(self.inputs / file, here)
+            before = files_of(here)
+            variables = {"LD_PRELOAD": self.faults, "RAYA_MEMORY_FAULT": fault, "RAYA_MEMORY_FAILED": str(mark)}
+            if elsewhere and self.cache:  # a driver that crashes may damage its cache
+                shutil.copytree(self.cache, cache)
+                variables["POCL_CACHE_DIR"] = str(cache)
+            code, told = self.run(COMMANDS[name], here, variables)
+            message = " | ".join(line for line in told.splitlines() if line.startswith("raya: "))
+            return self.judge(name, elsewhere, code, message, mark.exists(), before, files_of(here)), code, message
+
+    def run(self, arguments, here, variables):
+        """Exit code and stderr; the code of SIGTERM where a driver that waits for its memory had to be interrupted."""
+        with subprocess.Popen([self.raya, *arguments], cwd=here, env=environment(**variables),
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+            try:
+                _, told = process.communicate(timeout=LIMIT_S)
+            except subprocess.TimeoutExpired:
+                process.terminate()
+                try:
+                    _, told = process.communicate(timeout=LIMIT_S)
+                except subprocess.TimeoutExpired:
+                    process.kill()
+                    _, told = process.communicate()
+            return process.returncode, told.decode(errors="replace")
+
+    def judge(self, name, elsewhere, code, message, failed, before, after):
+        if code == 0:
+            if {file: comparable(file, content) for file, content in after.items()} != self.expected[name]:
+                return "BAD: exit 0, other files"
+            return "survived" if failed else "not reached"
+        left = sorted(file for file in after if after[file] != before.get(file))
+        spoilt = [file for file in left if not self.is_whole(name, file, after[file])]
+        lost = sorted(set(before) - set(after) - {"s.rst"})  # a checkpoint goes when the picture is written
+        if spoilt or lost:
+            return f"BAD: spoilt {spoilt}, lost {lost}"
+        if code in (2, 3) and "raya: " in message:
+            return f"exit {code}" + (", files written before stay" if left else "")
+        if elsewhere and code != -signal.SIGKILL:
+            return "driver waits for ever" if code == -signal.SIGTERM else "driver's abort"
+        return f"BAD: exit {code}"
+
+    def is_whole(self, name, file, content):
+        """A file that was written before the failure stays: the picture of an hour's render outlives its report."""
+        if file == "s.rst":
+            return self.resumes(content)
+        return comparable(file, content) == self.expected[name].get(file)
+
+    def resumes(self, state):
+        key = hashlib.sha256(state).hexdigest()
+        if key not in self.states:
+            with tempfile.TemporaryDirectory(dir=self.folder) as here:
+                Path(here, "s.rst").write_bytes(state)
+                done = subprocess.run([self.raya, *COMMANDS["resume"]], cwd=here, env=environment(),
+                                      capture_output=True, timeout=LIMIT_S)
+                found = {file: comparable(file, content) for file, content in files_of(here).items()}
+            self.states[key] = done.returncode == 0 and found == self.expected["resume"]
+        return self.states[key]
+
+
+def files_of(folder):
+    return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
+
+
+def comparable(name, content):
+    """What is the same in every run: pictures, and which members a report has."""
+    if name.endswith((".ppm", ".pfm", ".png")):
+        return hashlib.sha256(content).hexdigest()
+    if name == "x.json":
+        return sorted(json.loads(content))
+    if name.endswith(".json"):
+        json.loads(content)
+    return content.endswith((b"</html>\n", b"]}\n", b"}\n"))
+
+
+def faults_of(trial, seed, sample):
+    """(command, fault): every site once, in the first command that reaches it; and allocations elsewhere."""
+    seen, sites, elsewhere = set(), [], []
+    for name in COMMANDS:
+        numbers, count = trial.sites(name)
+        sites += [(name, number) for number in numbers if number not in seen]
+        seen.update(numbers)
+        elsewhere += [(name, f"+{at}") for at in range(1, count + 1)]
+    print(f"{len(sites)} sites, {len(elsewhere)} allocations elsewhere, seed {seed}", flush=True)
+    chosen = random.Random(seed)
+    if sample:
+        few = max(1, sample // 5)
+        return chosen.sample(sites, sample - few) + chosen.sample(elsewhere, few)
+    return sites + chosen.sample(elsewhere, ELSEWHERE)
+
+
+def read_log(path, program):
+    """What has run of this program; a log of another one begins anew."""
+    lines = Path(path).read_text().splitlines() if path and Path(path).exists() else []
+    if lines[:1] == [program]:
+        return {(row[0], row[1]): row[2:] for row in csv.reader(lines[1:]) if len(row) == 5}
+    if path:
+        Path(path).write_text(program + "\n")
+    return {}
+
+
+def processor():
+    names = re.findall(r"^model name\s*:\s*(.*)$", Path("/proc/cpuinfo").read_text(), re.M)
+    return names[0] if names else "unknown"
+
+
+def write_results(path, outcomes):
+    counts = collections.Counter()
+    for (name, fault), (ending, _, _) in outcomes.items():
+        counts[name, "elsewhere" if fault.startswith("+") else "raya", ending] += 1
+    with open(path, "w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["command", "allocations", "ending", "runs", "date", "processor"])
+        for key, count in sorted(counts.items()):
+            rows.writerow([*key, count, datetime.date.today().isoformat(), processor()])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("raya", "faults", "cl_faults"):
+        parser.add_argument(name, type=os.path.abspath)
+    parser.add_argument("--sample", type=int, default=0)
+    parser.add_argument("--seed", type=int, default=None)
+    parser.add_argument("--log")
+    parser.add_argument("--results")
+    options = parser.parse_args()
+    seed = options.seed if options.seed is not None else random.randrange(10**6) if options.sample else 1
+    with tempfile.TemporaryDirectory() as folder:
+        trial = Trial(options, Path(folder))
+        outcomes = {}
+        done = read_log(options.log, hashlib.sha256(Path(options.raya).read_bytes()).hexdigest())
+        for name, fault in faults_of(trial, seed, options.sample):
+            outcome = done.get((name, fault)) or trial.fail(name, fault)
+            outcomes[name, fault] = outcome
+            if outcome[0].startswith("BAD"):
+                print(f"{name} {fault}: {outcome[0]} {outcome[2]}", flush=True)
+            if options.log and (name, fault) not in done:
+                with open(options.log, "a", newline="") as file:
+                    csv.writer(file, lineterminator="\n").writerow([name, fault, *outcome])
+    if options.results:
+        write_results(options.results, outcomes)
+    endings = collections.Counter(ending for ending, _, _ in outcomes.values())
+    print(", ".join(f"{count} {ending}" for ending, count in sorted(endings.items())))
+    return any(ending.startswith("BAD") for ending in endings)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
