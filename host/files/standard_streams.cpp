@@ -42,7 +42,7 @@ void keep_stdout_for_file() {
     if (kept_stdout != kNone) return;
     std::fflush(stdout);
     kept_stdout = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    if (kept_stdout < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+    if (kept_stdout < 0 || TEMP_FAILURE_RETRY(::dup2(STDERR_FILENO, STDOUT_FILENO)) < 0)
         throw UserError("cannot keep stdout for a file: " + std::generic_category().message(errno));
 }
 
