@@ -35,8 +35,8 @@ std::string loader_error() {
     // The loader's words, which have no error code, are the same for a file system that is mounted with noexec.
     if (!limit.empty() && reason_has("failed to map segment"))
         throw UserError(fmt::format("out of memory while loading {}.so: {}; remedy: raise {}", name, reason, limit));
-    if (reason_has("No such file")) throw ModuleNeeds(reason);
-    throw ModuleError(reason);
+    if (reason_has("failed to map segment")) throw ModuleError(reason);
+    throw ModuleNeeds(reason);
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST_CASE("verify of what the device cannot do is skipped, and no success", "[cl
     CHECK(some.code == 0);
     CHECK_THAT(some.out, Catch::Contains("SKIP  machine   local memory and barriers, 32 work-items") &&
                              Catch::Contains("32 work-items wanted, the device has 8 in a group") &&
-                             Catch::Contains(": 1 checks passed, 0 failed, 1 skipped"));
+                             Catch::Contains(": 1 check passed, 0 failed, 1 skipped"));
     const RunOutcome none = run_raya({"verify", "--only", "32 work-items"}, small_groups);
     INFO(none.told());
     CHECK(none.code == 4);
@@ -112,7 +112,7 @@ TEST_CASE("verify with one width of lanes says so in its checks", "[cli][verify]
     const RunOutcome run = run_raya({"verify", "--lanes", "4", "--only", "number fp32"});
     INFO(run.told());
     CHECK(run.code == 0);
-    CHECK_THAT(run.out, Catch::Contains("PASS  number    fp32, 4 lanes") && Catch::Contains("1 checks passed"));
+    CHECK_THAT(run.out, Catch::Contains("PASS  number    fp32, 4 lanes") && Catch::Contains("1 check passed"));
 }
 
 TEST_CASE("verify refuses what makes no sense", "[cli][verify]") {

@@ -46,7 +46,7 @@ case $1 in
     devices) if fault no_device; then echo "raya: no OpenCL device"; exit 3; else echo toy; fi ;;
     verify)
         fault slow_verify && sleep 20
-        printf 'toy (Toy, driver 1)\nPASS  number\ntoy: 1 checks passed, 0 failed\n'
+        printf 'toy (Toy, driver 1)\nPASS  number\ntoy: 1 check passed, 0 failed\n'
         ! fault wrong_verify || { echo "FAIL  geometry  grid"; exit 4; } ;;
     generate) : >"${@: -1}" ;;
     bench)
