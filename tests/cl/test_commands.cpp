@@ -300,6 +300,5 @@ TEST_CASE("a launch that cannot be is refused with label, kernel and error", "[c
     CHECK_THROWS_AS(session.launch("empty", add, 8, 0, a, 1U), std::invalid_argument);
     const std::size_t too_wide = session.device().max_group_size * 2;
     CHECK_THROWS_WITH(session.launch("wide", add, 1, too_wide, a, 1U),
-                      Contains("'wide'") && Contains("'add'") && Contains("clEnqueueNDRangeKernel") &&
-                          Contains("CL_INVALID_WORK_") && Contains("remedy"));  // ..GROUP_ or ..ITEM_SIZE
+                      Contains("'wide'") && Contains("'add'") && Contains("groups of 1..") && Contains("remedy"));
 }
