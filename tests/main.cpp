@@ -3,11 +3,14 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
+#include "host/files/module.hpp"
 #include "tests/kernel_cache.hpp"
+#include "tests/paths.h"
 
 // What a developer's devices were tuned to is no part of a test.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
+    raya::set_module_folder(RAYA_MODULES);
     const raya::KernelCache cache;
     return Catch::Session().run(argc, argv);
 }

@@ -166,8 +166,7 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
         const std::string limit = memory_limit();
         throw DeviceError(fmt::format(
             "no OpenCL device found; remedy: {}install a driver (Debian: apt install pocl-opencl-icd), look at the "
-            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists; PoCL shows none where "
-            "it may not write its cache (POCL_CACHE_DIR, else .cache/pocl of HOME)",
+            "environment variable OCL_ICD_VENDORS, which may hide it, and at what clinfo lists",
             limit.empty() ? "" : fmt::format("raise {}, in which a driver may not fit, ", limit)));
     }
     const std::string one = entry_of(wanted, turn);
@@ -188,6 +187,8 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
 
 cl::Device choose_device(const std::string& name_part, std::size_t turn) {
     const std::vector<cl::Device> devices = all_devices();
+    if (devices.empty())
+        if (const std::string trouble = driver_cache_trouble(); !trouble.empty()) throw DeviceError(trouble);
     std::vector<DeviceInfo> infos;
     for (const cl::Device& device : devices) infos.push_back(device_info(device));
     const char* fallback = std::getenv("RAYA_DEVICE");

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <thread>
@@ -64,6 +65,18 @@ extern "C" void explain(int signal) {
         "; remedy: smaller work-groups (--group) or fewer lanes (--lanes), an empty folder as POCL_CACHE_DIR in case "
         "the cache is damaged, more memory (ulimit -v), a mounted /sys, or another driver (raya devices); raya verify "
         "shows what a driver does wrong\n");
+    ::_exit(kExitDeviceError);
+}
+
+/// LLVM, in PoCL, calls exit() where the disk with the kernel cache is full.
+void explain_exit() {
+    const char* const what = doing.load();
+    if (what == nullptr) return;
+    remove_files_in_progress();
+    for (const char* text :
+         {"\nraya: ", static_cast<const char*>(process.data()), "the OpenCL driver ended the program while ", what,
+          "; remedy: make room for PoCL's kernels, or name another folder in POCL_CACHE_DIR\n"})
+        tell(text);
     ::_exit(kExitDeviceError);
 }
 
@@ -128,6 +141,7 @@ void name_process_in_crashes(const std::string& name, double turn_s) {
 }
 
 void explain_driver_crashes() {
+    std::atexit(explain_exit);
     for (const int signal : kCrashes) {
         set_handler(signal, SIG_DFL, explain);
         if (signal != SIGFPE) keep_handler(signal);  // PoCL's makes a division by 0 go on

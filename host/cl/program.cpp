@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "host/cl/driver_cache.hpp"
 #include "host/cl/error_names.hpp"
 
 namespace raya {
@@ -20,14 +21,17 @@ std::string log_of(const cl::Program& program, const cl::Device& device) {
     }
 }
 
-// Behind a log without an error.
-constexpr const char* kNoReason =
-    "The log gives no reason. PoCL's has none where its cache is full, damaged or not writable: name an empty "
-    "folder with room in POCL_CACHE_DIR.\n";
-
 std::string name_of(const cl::Device& device) {
     const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
     return platform.getInfo<CL_PLATFORM_NAME>() + " " + device.getInfo<CL_DEVICE_NAME>();
+}
+
+std::string failure_text(const cl::Error& error, const std::string& what, const std::string& log) {
+    const std::string text = device_error(error.what(), error.err(), what).what();
+    if (log.find("error") != log.npos) return text;
+    const std::string trouble = driver_cache_trouble();
+    if (!trouble.empty()) return what + ": " + trouble;
+    return text + "; where it gives no reason, name an empty folder in POCL_CACHE_DIR: PoCL's cache may be damaged";
 }
 
 }  // namespace
@@ -46,9 +50,8 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         program_.build(device, options_.c_str());
     } catch (const cl::Error& error) {
         const std::string log = log_of(program_, device);
-        throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}{}",
-                                      device_error(error.what(), error.err(), what).what(), device_name, options_, log,
-                                      log.find("error") == log.npos ? kNoReason : ""));
+        throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}",
+                                      failure_text(error, what, log), device_name, options_, log));
     } catch (...) {            // out of memory, in the middle of the driver's work
         program_() = nullptr;  // which has left it locked: to release it would wait for ever
         throw;

@@ -1,7 +1,12 @@
-// Parts of the program that are loaded when they are first needed, so that a start does not pay for their libraries.
+// Parts of the program that are loaded when they are first needed, so that a start does not pay for their libraries;
+// and who may change files with code.
 #pragma once
+#include <sys/types.h>
+
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace raya {
 
@@ -18,9 +23,21 @@ struct ModuleNeeds : ModuleError {
 /// "the limit of 488 MB on memory (ulimit -v)", under which libraries may not load; empty where there is none.
 std::string memory_limit();
 
-/// The function `symbol` of the module `name` (a file NAME.so), which stays loaded. It is looked for beside the
-/// program, in ../lib/raya/ and .. from there. Throws ModuleError; UserError where a limit on
-/// memory is in the way.
+/// The function `symbol` of the module `name` (a file NAME.so), which stays loaded. A program in a folder `bin` has its
+/// modules in ../lib/raya from there, any other in its own folder. ModuleError; UserError where users other than root,
+/// this one and the program's owner may change the file or its folder, or a limit on memory is in the way.
 void* module_function(const std::string& name, const char* symbol);
+
+/// For test programs, which lie elsewhere than raya: the folder of their modules.
+void set_module_folder(const std::filesystem::path& folder);
+
+/// Whether a folder that anybody may write passes if it is sticky: nobody may replace what others own there.
+enum class Sticky { kRefused, kAllowed };
+
+/// Why users other than root and `owners` may change `path`, an absolute one without links, or replace it: names the
+/// file or folder with its owner or mode; empty where they may not. A group passes if it has no member but the owner.
+/// Folders above may be sticky; those above `known` as well are not checked.
+std::string other_writers(std::filesystem::path path, const std::vector<uid_t>& owners, Sticky sticky,
+                          const std::filesystem::path& known = "/");
 
 }  // namespace raya

@@ -46,6 +46,7 @@ struct Surroundings {
     rlim_t largest_file = 0;   // bytes that a file may grow to, 0: any; a longer one fails as a full disk does
     rlim_t memory = 0;         // bytes of address space that it may take, 0: any
     std::string error_file{};  // what stderr goes to, so that it is not seen in the outcome; empty: to be seen
+    std::string program = RAYA_PROGRAM;
     int signal = 0;            // sent to the program, unless it has ended before
     int signal_after_ms = 0;   // after it has begun to handle that signal, and `signal_when` is true
     std::function<bool()> signal_when{};
@@ -163,7 +164,7 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const Surrounding
     const std::vector<char*> argv = detail::pointers(arguments), envp = detail::pointers(variables);
     const detail::File input = detail::temporary_file(), out = detail::temporary_file(), err = detail::temporary_file();
     // Opened here, so that a user who may not enter the build's folder can still run it.
-    const int program = ::open(RAYA_PROGRAM, O_RDONLY | O_CLOEXEC);
+    const int program = ::open(around.program.c_str(), O_RDONLY | O_CLOEXEC);
     const pid_t child = program < 0 ? -1 : ::fork();
     if (child == 0) {
         ::dup2(::fileno(input.get()), STDIN_FILENO);
@@ -187,7 +188,7 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const Surrounding
     outcome.out = detail::contents(out.get());
     outcome.err = detail::contents(err.get());
     if (child < 0 || outcome.code == 126 || outcome.code == 127)
-        throw std::runtime_error("cannot run " RAYA_PROGRAM ": " + outcome.told());
+        throw std::runtime_error("cannot run " + around.program + ": " + outcome.told());
     return outcome;
 }
 

@@ -1,4 +1,5 @@
 // Trouble with the device or its compiler: exit code 3, with all that is needed to mend it.
+#include <sys/mount.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -156,14 +157,17 @@ TEST_CASE("memory that runs out while the driver builds a kernel ends the progra
                   {"out of memory on the host"}, around);
 }
 
-TEST_CASE("where PoCL's cache may not be written, the build's failure says so; without any place one is found",
+TEST_CASE("where PoCL's cache is not writable, the build's failure begins with that; without any place one is found",
           "[cli]") {
     const ScratchFolder home, outputs;
     ::chmod(outputs.path().c_str(), 0777);
     ::chmod(home.path().c_str(), 0555);
     const Words words = {
         "render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes", "4"};
-    check_refused(outputs, words, 3, {"clBuildProgram failed", "The log gives no reason", "POCL_CACHE_DIR"},
+    check_refused(outputs, words, 3,
+                  {"raya: building program 'ring/trace.cl': PoCL's kernel cache (POCL_CACHE_DIR=" +
+                       home.path().string() + "): cannot write '",
+                   "is not writable; ", "build log:"},
                   {.variables = {{"POCL_CACHE_DIR", home.path()}}, .as_nobody = true});
     const RunOutcome run = run_raya(
         words,
@@ -171,6 +175,38 @@ TEST_CASE("where PoCL's cache may not be written, the build's failure says so; w
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.err, Catch::Contains("raya: warning: ") && Catch::Contains("PoCL keeps its kernels in"));
+}
+
+/// A file system of `bytes` at `folder` while it lives; where this process may not mount one, there is none.
+class SmallDisk {
+  public:
+    SmallDisk(const fs::path& folder, int bytes)
+        : folder_(folder),
+          there_(::mount("none", folder.c_str(), "tmpfs", 0, ("size=" + std::to_string(bytes)).c_str()) == 0) {}
+    ~SmallDisk() {
+        if (there_) ::umount2(folder_.c_str(), MNT_DETACH);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+    bool there() const { return there_; }
+
+  private:
+    fs::path folder_;
+    bool there_;
+};
+
+TEST_CASE("a full kernel cache is named as such, whether PoCL or LLVM in it finds that", "[cli]") {
+    if (kSanitized) return;
+    for (const int bytes : {4 << 10, 300 << 10}) {
+        CAPTURE(bytes);
+        const ScratchFolder cache, outputs;
+        const SmallDisk disk(cache.path(), bytes);
+        if (!disk.there()) return;
+        check_refused(outputs,
+                      render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"}), 3,
+                      {"No space left on device", "make room", "POCL_CACHE_DIR"},
+                      {.variables = {{"POCL_CACHE_DIR", cache.path()}}});
+    }
 }
 
 }  // namespace

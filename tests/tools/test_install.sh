@@ -62,7 +62,7 @@ expect 1 "OpenCL error"  # without them there is no number/number.clh
 # Without the module of pictures, and with one whose libraries are missing, a picture is refused with what helps, and PPM is written.
 rm "$prefix/lib/raya/raya_pictures.so"
 away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
-expect 2 "raya_pictures.so lies neither beside the program nor in"
+expect 2 "there is no file '$prefix/lib/raya/raya_pictures.so"
 expect 2 "name a .ppm file instead"
 echo 'extern int nowhere(void); int raya_encode_picture(void) { return nowhere(); }' >"$scratch/m.c"
 echo 'int nowhere(void) { return 0; }' >"$scratch/n.c"

@@ -1,0 +1,260 @@
+// Files that other users have planted, or could change: no code of theirs is loaded.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/cli/refusals.hpp"
+
+namespace raya {
+namespace {
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+constexpr uid_t kNobody = 65534;
+
+const fs::path kBuild = fs::path(RAYA_PROGRAM).parent_path();
+
+/// A copy of raya in `program`, and of its modules in `modules`.
+struct Installation {
+    Installation(const fs::path& folder, const char* program_in, const char* modules_in)
+        : top(folder),
+          program((folder / program_in / "raya").lexically_normal()),
+          modules((folder / modules_in / "x").lexically_normal().parent_path()) {
+        fs::create_directories(program.parent_path());
+        fs::create_directories(modules);
+        fs::copy_file(RAYA_PROGRAM, program);
+        for (const char* name : {"raya_pictures.so", "raya_mpi.so"})
+            if (fs::exists(kBuild / name)) fs::copy_file(kBuild / name, modules / name);
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) ::chmod(entry.path().c_str(), 0755);
+        ::chmod(folder.c_str(), 0755);
+    }
+
+    RunOutcome run(bool as_nobody = false) const {
+        const ScratchFolder outputs;
+        ::chmod(outputs.path().c_str(), 0777);
+        return run_raya(
+            {"render", scene_file("planes"), "-o", outputs / "x.png", "--size", "8", "--pes", "8", "--lanes", "4",
+             "-q"},
+            {.variables = {{"POCL_CACHE_DIR", as_nobody ? outputs.path().string() : ::getenv("POCL_CACHE_DIR")}},
+             .as_nobody = as_nobody,
+             .program = program});
+    }
+
+    /// As one of two ranks that never meet: the module for MPI comes before anything else.
+    RunOutcome run_as_rank() const {
+        return run_raya(
+            {"devices"},
+            {.variables = {{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "2"}, {"RAYA_RANK_TIMEOUT", "1"}},
+             .program = program});
+    }
+
+    void check_refused(const std::string& named) const {
+        for (const RunOutcome& outcome : {run(), run_as_rank()}) {
+            INFO(outcome.told());
+            CHECK(outcome.code == 2);
+            CHECK_THAT(outcome.err, Contains("refused to load '" + modules.string() + "/raya_"));
+            CHECK_THAT(outcome.err, Contains(named));
+        }
+    }
+
+    fs::path top, program, modules;
+};
+
+TEST_CASE("modules come from one folder of an installation, and from no other", "[cli][module]") {
+    const ScratchFolder folder;
+    CHECK(Installation(folder / "flat", ".", ".").run().code == 0);
+    CHECK(Installation(folder / "prefix", "bin", "lib/raya").run().code == 0);
+    // Folders in which versions before looked as well, and where another user can put something.
+    for (const auto& [program, modules] : {std::pair{"sub", "."}, {"sub", "lib/raya"}, {"bin", "bin"}, {"bin", "."}}) {
+        CAPTURE(program, modules);
+        const ScratchFolder scratch;
+        const Installation planted(scratch / "planted", program, modules);
+        const RunOutcome picture = planted.run(), rank = planted.run_as_rank();
+        INFO(picture.told() + rank.told());
+        CHECK(picture.code == 2);
+        CHECK_THAT(picture.err, Contains("there is no file '") && Contains("/raya_pictures.so'") && Contains(".ppm"));
+        CHECK(rank.code == 2);
+        CHECK_THAT(rank.err, Contains("there is no file '") && Contains("/raya_mpi.so'"));
+    }
+}
+
+TEST_CASE("a module that others may change, or replace, is refused", "[cli][module]") {
+    const ScratchFolder folder;
+    const Installation flat(folder / "flat", ".", "."), prefix(folder / "prefix", "bin", "lib/raya");
+    const auto check_mode = [](const Installation& one, const fs::path& changed, mode_t mode,
+                               const std::string& named) {
+        CAPTURE(changed, mode);
+        struct stat before {};
+        REQUIRE(::stat(changed.c_str(), &before) == 0);
+        ::chmod(changed.c_str(), mode);
+        one.check_refused("other users may write '" + named);
+        ::chmod(changed.c_str(), before.st_mode & 07777);
+    };
+    check_mode(flat, flat.top, 0777, flat.top.string() + "' (mode 0777)");
+    check_mode(flat, flat.top, 01777, flat.top.string() + "' (mode 1777)");
+    check_mode(prefix, prefix.modules, 0757, prefix.modules.string() + "' (mode 0757)");
+    check_mode(prefix, prefix.top / "lib", 0777, (prefix.top / "lib").string() + "' (mode 0777)");
+    ::chmod((prefix.top / "lib").c_str(), 01777);  // sticky: others may not replace lib/raya
+    CHECK(prefix.run().code == 0);
+    for (const char* name : {"raya_pictures.so", "raya_mpi.so"}) {
+        ::chmod((flat.modules / name).c_str(), 0777);
+        ::rename((prefix.modules / name).c_str(), (prefix.top / name).c_str());
+        fs::create_symlink(prefix.top / name, prefix.modules / name);
+    }
+    flat.check_refused("(mode 0777)");
+    CHECK_THAT(prefix.run().err, Contains("there is no file '"));
+    CHECK_THAT(prefix.run_as_rank().err, Contains("there is no file '"));
+}
+
+TEST_CASE("a group that may write passes if the owner is its only member", "[cli][module]") {
+    if (::geteuid() != 0) return;
+    const ScratchFolder folder;
+    const Installation flat(folder / "flat", ".", ".");
+    ::chmod(flat.top.c_str(), 0775);
+    CHECK(flat.run().code == 0);  // root's own
+    constexpr gid_t kNoNumber = 54'321;
+    REQUIRE(::chown(flat.top.c_str(), 0, kNoNumber) == 0);
+    CHECK(flat.run().code == 0);
+    REQUIRE(::chown(flat.top.c_str(), 0, kNobody) == 0);
+    flat.check_refused("(mode 0775)");
+    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // that of the user daemon
+    flat.check_refused("(mode 0775)");
+}
+
+TEST_CASE("modules of the program's owner and of root are loaded, of other users not", "[cli][module]") {
+    if (::geteuid() != 0) return;
+    const ScratchFolder folder;
+    ::chmod(folder.path().c_str(), 0755);
+    const Installation prefix(folder / "prefix", "bin", "lib/raya");
+    CHECK(prefix.run(true).code == 0);  // root's, run by another user
+    for (const auto& entry : fs::recursive_directory_iterator(prefix.modules))
+        REQUIRE(::chown(entry.path().c_str(), kNobody, 0) == 0);
+    prefix.check_refused("' belongs to user nobody");
+    REQUIRE(::chown(prefix.program.c_str(), kNobody, 0) == 0);  // whom one trusts who runs it
+    CHECK(prefix.run().code == 0);
+}
+
+/// Where a run as nobody finds its cache.
+struct CacheRun {
+    ScratchFolder temporary;
+    std::vector<std::pair<std::string, std::string>> variables;
+
+    explicit CacheRun(mode_t mode = 01777) { ::chmod(temporary.path().c_str(), mode); }
+
+    RunOutcome operator()(const std::string& home, const std::string& cache = "",
+                          const Words& words = {"devices"}) const {
+        return run_raya(words, {.variables = {{"POCL_CACHE_DIR", ""},
+                                              {"TMPDIR", temporary.path()},
+                                              {"HOME", home},
+                                              {"XDG_CACHE_HOME", cache}},
+                                .as_nobody = true});
+    }
+
+    RunOutcome render() const {
+        const ScratchFolder outputs;
+        ::chmod(outputs.path().c_str(), 0777);
+        return (*this)("", "",
+                       {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--lanes",
+                        "4", "-q"});
+    }
+
+    fs::path own(const std::string& end = "") const {
+        return temporary / ("raya-pocl-cache-" + std::to_string(::geteuid() == 0 ? kNobody : ::geteuid()) + end);
+    }
+};
+
+void give_to_nobody(const fs::path& path) {
+    if (::geteuid() == 0) REQUIRE(::chown(path.c_str(), kNobody, kNobody) == 0);
+}
+
+TEST_CASE("PoCL gets a folder of this user's own where others may write the one that it would take", "[cli][cache]") {
+    const CacheRun run;
+    const ScratchFolder homes;
+    ::chmod(homes.path().c_str(), 0755);
+    const auto check_own = [&](const std::string& home, const std::string& cache, const std::string& why) {
+        CAPTURE(home, cache);
+        fs::remove_all(run.own());
+        const RunOutcome outcome = run(home, cache);
+        INFO(outcome.told());
+        CHECK(outcome.code == 0);
+        CHECK_THAT(outcome.err, Contains("raya: warning: ") && Contains(why) && Contains(run.own().string()));
+        struct stat is {};
+        REQUIRE(::stat(run.own().c_str(), &is) == 0);
+        CHECK(is.st_mode == (S_IFDIR | 0700));
+    };
+    CHECK_FALSE(fs::exists("/tmp/pocl"));
+    check_own("", "", "'/tmp");
+    CHECK_FALSE(fs::exists("/tmp/pocl"));
+    fs::create_directories(homes / "writable/.cache/pocl");
+    give_to_nobody(homes / "writable/.cache/pocl");
+    ::chmod((homes / "writable/.cache/pocl").c_str(), 0777);
+    check_own(homes / "writable", "", "other users may write");
+    check_own(homes / "elsewhere", homes / "writable/.cache", "other users may write");
+    fs::create_directories(homes / "above/.cache/pocl/kcache");
+    for (const char* name : {"above/.cache/pocl/kcache", "above/.cache/pocl", "above/.cache"})
+        give_to_nobody(homes / name);
+    ::chmod((homes / "above").c_str(), 0777);
+    check_own(homes / "above", "", "/above' (mode 0777)");
+    check_own(homes.path(), "", "is not writable");
+    if (::geteuid() != 0) return;
+    fs::create_directories(homes / "foreign/.cache/pocl");
+    REQUIRE(::chown((homes / "foreign/.cache/pocl").c_str(), 1, 1) == 0);
+    ::chmod((homes / "foreign/.cache/pocl").c_str(), 0777);
+    check_own(homes / "foreign", "", "belongs to user ");
+}
+
+TEST_CASE("PoCL's usual folder serves where it is this user's alone", "[cli][cache]") {
+    const CacheRun run;
+    const ScratchFolder home;
+    ::chmod(home.path().c_str(), 0755);
+    give_to_nobody(home.path());
+    for (const std::string& cache : {std::string(), (home / "cache").string()}) {
+        const RunOutcome outcome = run(home.path(), cache);
+        INFO(outcome.told());
+        CHECK(outcome.code == 0);
+        CHECK(outcome.err.empty());
+        CHECK_FALSE(fs::exists(run.own()));
+    }
+    CHECK(fs::exists(home / ".cache/pocl/kcache"));
+    CHECK(fs::exists(home / "cache/pocl/kcache"));
+}
+
+TEST_CASE("a planted folder for kernels leads to one of another name", "[cli][cache]") {
+    const CacheRun run;
+    fs::create_directory(run.own());
+    ::chmod(run.own().c_str(), 0777);  // root's, as another user's would be
+    if (::geteuid() != 0) ::chmod(run.own().c_str(), 0755);
+    fs::create_directory_symlink(run.temporary.path(), run.own("-1"));
+    std::ofstream(run.own("-2")) << "x";
+    fs::create_directory(run.own("-3"));
+    give_to_nobody(run.own("-3"));
+    ::chmod(run.own("-3").c_str(), 0750);
+    const RunOutcome outcome = run.render();
+    INFO(outcome.told());
+    CHECK(outcome.code == 0);
+    CHECK_THAT(outcome.err, Contains(run.own("-4").string()));
+    CHECK(fs::is_empty(run.own()));
+    CHECK(fs::is_empty(run.own("-3")));
+    CHECK_FALSE(fs::is_empty(run.own("-4")));
+}
+
+TEST_CASE("without any safe folder for kernels the message names those that were tried", "[cli][cache]") {
+    const auto check_none = [](const CacheRun& run) {
+        const RunOutcome outcome = run("");
+        INFO(outcome.told());
+        CHECK(outcome.code == 3);
+        CHECK_THAT(outcome.err, Contains(run.own().string()) && Contains("name one in POCL_CACHE_DIR") &&
+                                    !Contains("no OpenCL device found"));
+    };
+    check_none(CacheRun(0777));  // not sticky: others may replace what lies there
+    const CacheRun taken;
+    for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
+        std::ofstream(taken.own(end)) << "x";
+    check_none(taken);
+}
+
+}  // namespace
+}  // namespace raya
