@@ -88,6 +88,28 @@ stand_in sudo '[[ $* != *apt-get* ]]'
 run_setup
 expect 1 "apt-get failed" "$line cmake catch2"
 
+# Another program holds apt's locks: of `update` until the third attempt, of `install` until the second; then for longer than one waits.
+chmod 777 "$machine"
+stand_in sleep "echo \$1 >>$machine/slept"
+stand_in sudo '[[ $* == *apt-get* ]] || exit 0
+echo "$*" >>"${0%/*}/calls"
+mapfile -t calls <"${0%/*}/calls"
+case ${#calls[@]} in
+    1 | 2) echo "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt)" >&2; exit 100 ;;
+    4) echo "E: Unable to acquire the dpkg frontend lock (/var/lib/dpkg/lock-frontend), is another process using it?" >&2; exit 100 ;;
+    *) echo "sudo $*" ;;
+esac'
+run_setup
+expect 0 "another program holds apt's lock; waiting for it, up to 10 minutes: E: Could not get lock /var/lib/apt/lists/lock" "process 7" \
+    "up to 10 minutes: E: Unable to acquire" "$apt update"$'\n' "$apt install -y --no-install-recommends cmake catch2"
+[[ $(<"$machine/slept") == $'5\n5\n5' ]] || { echo "FAILED: slept $(<"$machine/slept")"; exit 1; }
+stand_in sudo '[[ $* == "-n true" ]] || { echo "E: Could not get lock /a" >&2; exit 100; }'
+rm "$machine/slept"
+run_setup
+expect 1 "update failed" "apt-get failed" "$line cmake catch2"
+mapfile -t slept <"$machine/slept"
+((${#slept[@]} == 240)) || { echo "FAILED: ${#slept[@]} times 5 s"; exit 1; }
+
 # Not Debian: go on where there are tools to build with.
 rm "$machine/dpkg-query"
 run_setup
