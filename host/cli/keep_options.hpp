@@ -40,7 +40,7 @@ class StateFile {
 
     bool due() const;
     void keep(const RingState& state, const StateSettings& settings);
-    std::optional<RingState> read(const StateSettings& settings) const;
+    std::optional<RingState> read(const StateSettings& settings, const RingState& like) const;
 
     const KeepOptions& options_;
     RingKeeping keeping_;

@@ -36,7 +36,7 @@ void RingRenderer::in_bands(std::uint32_t pass, PixelRange range, RingResult& re
                             const std::function<void(PixelRange)>& trace) {
     if (keeping_ == nullptr) return trace(range);
     if (resumed_ && resumed_->pass > pass) return;
-    if (resumed_ && resumed_->pass == pass) range.begin = resumed_->next;
+    if (resumed_ && resumed_->pass == pass) range.begin = std::max(range.begin, resumed_->next);
     while (range.begin < range.end) {
         const Clock::time_point start = Clock::now();
         PixelRange band = range;
@@ -70,27 +70,32 @@ StateSettings RingRenderer::state_settings() const {
             {"another scene, camera or light", words_hash(job_.job.words())}};
 }
 
-RingState RingRenderer::state(const RingResult& result) {
+// What is on the host as it is; what is on the device by its size alone.
+RingState RingRenderer::host_state(const RingResult& result) const {
     RingState s;
     s.seconds = earlier_s_ + seconds_since(started_);
     s.communication = communication_;
     s.image = result.image.rgb;
     s.pixels.resize(pixels_.size());
-    session_.read("keep pixels", pixels_, s.pixels);
-    if (contrast_) {
-        s.marks.resize(contrast_->marks().size());
-        session_.read("keep marks", contrast_->marks(), s.marks);
-    }
+    if (contrast_) s.marks.resize(contrast_->marks().size());
     for (std::size_t i = 0; i < counters_.size(); ++i) {
-        RingState::Pass pass;
+        RingState::Pass& pass = s.passes.emplace_back();
         pass.cycles.resize(counters_[i].cycles.size());
         pass.events.resize(counters_[i].events.size());
-        session_.read("keep counters", counters_[i].cycles, pass.cycles);
-        session_.read("keep counters", counters_[i].events, pass.events);
         if (result.phases[i].kept_cost) pass.costs = result.phases[i].kept_cost->cycles;
-        s.passes.push_back(std::move(pass));
     }
     if (result.all.kept_cost) s.all_costs = result.all.kept_cost->cycles;
+    return s;
+}
+
+RingState RingRenderer::state(const RingResult& result) {
+    RingState s = host_state(result);
+    session_.read("keep pixels", pixels_, s.pixels);
+    if (contrast_) session_.read("keep marks", contrast_->marks(), s.marks);
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        session_.read("keep counters", counters_[i].cycles, s.passes[i].cycles);
+        session_.read("keep counters", counters_[i].events, s.passes[i].events);
+    }
     return s;
 }
 
@@ -112,10 +117,11 @@ void RingRenderer::resume(RingResult& result) {
     if (ranks_.many()) throw UserError("a render of several ranks does not keep its state; start it without mpirun");
     const std::uint32_t at_once = settings_.kernels.lanes * settings_.kernels.group_size;
     band_ = std::max(share_ / kFirstBands, kFewestOfLane * at_once);
-    if (keeping_->resume) resumed_ = keeping_->resume(state_settings());
+    if (!keeping_->resume) return;
+    make_room(result);
+    resumed_ = keeping_->resume(state_settings(), host_state(result));
     if (!resumed_) return;
     const StepLog::Step step = session_.step("resume");
-    make_room(result);
     RingState& s = *resumed_;
     earlier_s_ = s.seconds;
     communication_ = s.communication;

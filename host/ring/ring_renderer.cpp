@@ -54,6 +54,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
 
 void RingRenderer::build() {
     const StepLog::Step building = session_.step("set up device");
+    const std::jthread notice = session_.compiling();
     const Clock::time_point start = Clock::now();
     const KernelOptions options = kernel_options(settings_, job_.job, job_.accel, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);

@@ -51,6 +51,7 @@ class RingRenderer {
     void in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
                   const std::function<void(PixelRange)>& trace);
     StateSettings state_settings() const;
+    RingState host_state(const RingResult& result) const;
     RingState state(const RingResult& result);
     void resume(RingResult& result);
     void keep(std::uint32_t pass, PixelRange range, RingResult& result);

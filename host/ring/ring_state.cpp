@@ -14,7 +14,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "states are written as they lie in memory");
 
-constexpr std::string_view kMagic = "raya state 2\n";
 constexpr std::size_t kHashLetters = 32;
 
 class Writer {
@@ -42,8 +41,7 @@ class Reader {
     void take(std::vector<T>& values) {
         std::uint64_t count = 0;
         take_raw(&count, sizeof count);
-        if (count > bytes_.size() / sizeof(T)) throw UserError("damaged");
-        values.resize(count);
+        if (count != values.size()) throw UserError("damaged");
         take_raw(values.data(), count * sizeof(T));
     }
     void take_raw(void* to, std::size_t bytes) {
@@ -93,28 +91,27 @@ void check_settings(const Json& of, const StateSettings& settings) {
 
 std::string state_bytes(const RingState& state, const StateSettings& settings) {
     const std::string header = header_of(state, settings).dump();
-    Writer to(fmt::format("{}{}\n", kMagic, header));
+    Writer to(fmt::format("{}{}\n", kStateMagic, header));
     to.put_raw(&state.communication, sizeof state.communication);
     for_each_vector(state, [&](const auto& values) { to.put(values); });
     return to.finish();
 }
 
-RingState read_state(std::string_view bytes, const StateSettings& settings) {
-    if (!bytes.starts_with(kMagic)) throw UserError("not a checkpoint of this version of raya");
-    if (bytes.size() < kMagic.size() + kHashLetters ||
+RingState read_state(std::string_view bytes, const StateSettings& settings, RingState state) {
+    if (!bytes.starts_with(kStateMagic)) throw UserError("not a checkpoint of this version of raya");
+    if (bytes.size() < kStateMagic.size() + kHashLetters ||
         bytes_hash(bytes.substr(0, bytes.size() - kHashLetters)) != bytes.substr(bytes.size() - kHashLetters))
         throw UserError("damaged");
-    bytes = bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHashLetters);
+    bytes = bytes.substr(kStateMagic.size(), bytes.size() - kStateMagic.size() - kHashLetters);
     const std::size_t end = bytes.find('\n');
     const Json header = Json::parse(std::string(bytes.substr(0, end)), {"damaged header"});
     check_settings(header.at("of"), settings);
-    RingState state;
     state.pass = static_cast<std::uint32_t>(header.at("pass").whole(1));
     state.window = static_cast<std::uint32_t>(header.at("window").whole(UINT32_MAX));
     state.next = static_cast<std::uint32_t>(header.at("next").whole(UINT32_MAX));
     state.share = header.at("share").number();
     state.seconds = header.at("seconds").number();
-    state.passes.resize(header.at("passes").whole(2));
+    if (header.at("passes").whole() != state.passes.size()) throw UserError("damaged");
     Reader from(bytes.substr(end + 1));
     from.take_raw(&state.communication, sizeof state.communication);
     for_each_vector(state, [&](auto& values) { from.take(values); });

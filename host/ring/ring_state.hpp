@@ -37,10 +37,14 @@ struct RingState {
 /// The name is an option, or words that read well after "was rendered with"; of a flag the value is "yes" or "no".
 using StateSettings = std::vector<std::pair<std::string, std::string>>;
 
+/// How its bytes begin.
+inline constexpr std::string_view kStateMagic = "raya state 2\n";
+
 std::string state_bytes(const RingState& state, const StateSettings& settings);
 
-/// Throws UserError without the file's name: not a checkpoint, damaged, or of another render, and in what it differs.
-RingState read_state(std::string_view bytes, const StateSettings& settings);
+/// Reads a state into `like`, which has the sizes of the render's vectors. Throws UserError without the file's name:
+/// not a checkpoint, damaged, or of another render, and in what it differs.
+RingState read_state(std::string_view bytes, const StateSettings& settings, RingState like);
 
 /// How a render keeps its state.
 struct RingKeeping {
@@ -49,8 +53,8 @@ struct RingKeeping {
     /// Asked after each band; what is due is given to `keep`.
     std::function<bool()> due;
     std::function<void(const RingState&, const StateSettings&)> keep;
-    /// Where to go on, by the renderer's settings; none: at the beginning.
-    std::function<std::optional<RingState>(const StateSettings&)> resume;
+    /// Where to go on, by the renderer's settings and a state of its sizes; none: at the beginning.
+    std::function<std::optional<RingState>(const StateSettings&, const RingState& like)> resume;
 };
 
 }  // namespace raya

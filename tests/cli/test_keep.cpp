@@ -62,7 +62,7 @@ TEST_CASE("what cannot be kept or resumed is refused", "[cli][keep]") {
     refused({"--keep", "-"}, {"--keep -"});
     refused({"--keep", folder / "s.rst", "--keep-every", "-1"}, {"--keep-every -1", "0..86400"});
     refused({"--keep", folder / "none/s.rst"}, {"none"});
-    refused({"--keep", folder / "x.pfm"}, {"named twice"});
+    refused({"--keep", folder / "x.pfm"}, {"--keep", "the same file as --output"});
     refused({"--keep", folder / "s.rst", "--machine", "torus"}, {"--keep", "--machine torus", "grande"});
     refused({"--keep", folder / "s.rst", "--frames", "1:2", "--turn", "90"}, {"--keep", "one image"});
 }
@@ -70,16 +70,24 @@ TEST_CASE("what cannot be kept or resumed is refused", "[cli][keep]") {
 TEST_CASE("a file that is there is neither written over nor taken for a state", "[cli][keep]") {
     const ScratchFolder folder;
     const std::string file = folder / "s.rst";
-    write_whole_file(file, "hours of work");
-    const auto run = [&](const Words& more) { return run_raya(render_of(folder, more)); };
-    const RunOutcome kept = run({"--keep", file});
-    CHECK(kept.code == 2);
-    CHECK_THAT(kept.err, Catch::Contains("give --resume"));
-    const RunOutcome resumed = run({"--keep", file, "--resume"});
-    CHECK(resumed.code == 2);
-    CHECK_THAT(resumed.err, Catch::Contains("not a checkpoint"));
-    CHECK(file_contents(file) == "hours of work");
-    CHECK(folder.entries() == 1);
+    const auto refused = [&](const Words& more, const std::string& message) {
+        const std::string before = file_contents(file);
+        const RunOutcome run = run_raya(render_of(folder, more));
+        INFO(run.told());
+        CHECK(run.code == 2);
+        CHECK_THAT(run.err, Catch::Contains("--keep " + file) && Catch::Contains(message));
+        CHECK_THAT(run.err, !Catch::Contains("remove"));  // a scene is not to be deleted
+        CHECK(file_contents(file) == before);
+        CHECK(folder.entries() == 1);
+    };
+    for (const std::string& content :
+         {std::string("hours of work"), file_contents(scene_file("planes")), std::string()}) {
+        write_whole_file(file, content);
+        refused({"--keep", file}, "is not a checkpoint; name another file");
+        refused({"--keep", file, "--resume"}, "is not a checkpoint; name another file");
+    }
+    write_whole_file(file, "raya state 2\nhours of work");
+    refused({"--keep", file}, "give --resume");
 }
 
 }  // namespace

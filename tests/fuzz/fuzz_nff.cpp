@@ -1,12 +1,5 @@
-// The NFF reader as libFuzzer drives it: any bytes are read or refused, and what is read survives being written.
-//   tools/fuzz [SECONDS]
+// NFF: any bytes are read or refused, and a scene that was read survives being written.
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "host/error.hpp"
@@ -14,32 +7,21 @@
 #include "host/scene/nff_writer.hpp"
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/triangulate.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 namespace {
 
 using namespace raya;
+using namespace raya::fuzz;
 
-[[noreturn]] void complain(const char* what, std::string_view detail) {
-    std::fprintf(stderr, "fuzz_nff: %s: %.*s\n", what, static_cast<int>(detail.size()), detail.data());
-    std::abort();
-}
+const char* const kFile = "fuzz.nff";
 
-/// A refusal names file and line: "fuzz.nff:LINE: reason".
-void check_message(std::string_view message) {
-    constexpr std::string_view kName = "fuzz.nff:";
-    if (!message.starts_with(kName)) complain("a refusal without file", message);
-    const std::size_t end = message.find_first_not_of("0123456789", kName.size());
-    if (end == std::string_view::npos || end == kName.size() || message[kName.size()] == '0' ||
-        message.substr(end, 2) != ": " || message.size() <= end + 2)
-        complain("a refusal without line or reason", message);
-}
-
-/// n - 2 triangles of an outline of n vertices, each of three different ones, as the packer cuts patches. Long outlines
-/// take cubic time and are left out.
+/// The packer cuts patches into n - 2 triangles of three different vertices each. Long outlines take cubic time and are
+/// left out.
 void check_triangles(const Polygon& polygon) {
-    constexpr std::size_t kMostVertices = 32;
+    constexpr std::size_t kMaxVertices = 32;
     const std::size_t n = polygon.vertices.size();
-    if (n > kMostVertices) return;
+    if (n > kMaxVertices) return;
     const auto triangles = triangulate(polygon.vertices, newell_normal(polygon.vertices));
     if (triangles.size() != n - 2) complain("wrong number of triangles", std::to_string(triangles.size()));
     for (const auto& [a, b, c] : triangles)
@@ -47,33 +29,36 @@ void check_triangles(const Polygon& polygon) {
             complain("a wrong triangle", std::to_string(a));
 }
 
-/// What is left of a file in which something was passed over is NFF, and a file that is NFF has nothing of the kind.
+void check_round_trip(const Scene& scene) {
+    const std::string written = write_nff(scene);
+    if (!(parse_nff(written, kFile) == scene)) complain("changed by being written and read", written);
+}
+
+/// Reads with remarks: what is left of the file is NFF, and a file that is NFF has no remark.
 void check_leniently(std::string_view text) {
     std::vector<NffRemark> remarks;
-    const Scene scene = parse_nff(text, "fuzz.nff", &remarks);
-    const std::string written = write_nff(scene);
-    if (!(parse_nff(written, "fuzz.nff") == scene)) complain("changed by being written and read", written);
+    const Scene scene = parse_nff(text, kFile, &remarks);
+    check_round_trip(scene);
     for (const NffRemark& remark : remarks)
         if (remark.count == 0 || remark.line < 1) complain("a remark without count or line", remark.what);
-    if (remarks.empty() && !(parse_nff(text, "fuzz.nff") == scene)) complain("passed over without a remark", text);
+    if (remarks.empty() && !(parse_nff(text, kFile) == scene)) complain("skipped without a remark", text);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const std::string_view text = text_of(data, size);
     try {
         check_leniently(text);
     } catch (const UserError& error) {
-        check_message(error.what());
+        check_refusal_with_line(error.what(), kFile);
     }
     try {
-        const Scene scene = parse_nff(text, "fuzz.nff");
-        const std::string written = write_nff(scene);
-        if (!(parse_nff(written, "fuzz.nff") == scene)) complain("changed by being written and read", written);
+        const Scene scene = parse_nff(text, kFile);
+        check_round_trip(scene);
         for (const Polygon& polygon : scene.polygons) check_triangles(polygon);
     } catch (const UserError& error) {
-        check_message(error.what());
+        check_refusal_with_line(error.what(), kFile);
     }
     return 0;  // any other exception ends the program: a find
 }

@@ -1,5 +1,6 @@
 // Renders that are stopped between two bands, anywhere, and go on from what they kept: the same image and counts.
 #include <catch2/catch.hpp>
+#include <functional>
 #include <random>
 
 #include "host/error.hpp"
@@ -23,8 +24,8 @@ class Keeper {
             ++count_;
             if (--left_ == 0) throw Stopped();
         };
-        keeping_.resume = [this](const StateSettings& settings) {
-            return kept_.empty() ? std::optional<RingState>() : read_state(kept_, settings);
+        keeping_.resume = [this](const StateSettings& settings, const RingState& like) {
+            return kept_.empty() ? std::optional<RingState>() : read_state(kept_, settings, like);
         };
     }
     const RingKeeping* keeping() const { return &keeping_; }
@@ -155,6 +156,47 @@ TEST_CASE("a state of another render is refused by what is different", "[ring][k
     refused(scene, settings_for(AntialiasMethod::kNone, 100), "was rendered with a device window of ");
 }
 
+TEST_CASE("a checkpoint whose vectors have other sizes than the render's is refused, its hash right", "[ring][keep]") {
+    Session session(choose_device(""));
+    session.keep_programs();
+    const Scene scene = project_scene("planes");
+    for (const AntialiasMethod method : {AntialiasMethod::kNone, AntialiasMethod::kSupersample}) {
+        CAPTURE(antialias_name(method));
+        const RingSettings settings = settings_for(method, 1 << 22);
+        RingState kept;
+        StateSettings of;
+        RingKeeping keeping;
+        keeping.band_s = 0;
+        keeping.due = [] { return true; };
+        keeping.keep = [&](const RingState& state, const StateSettings& its) {
+            kept = state;
+            of = its;
+            throw Stopped();
+        };
+        RingRenderer renderer(session, scene, settings);
+        CHECK_THROWS_AS(renderer.render({}, &keeping), Stopped);
+        const std::pair<const char*, std::function<void(RingState&)>> damages[] = {
+            {"no pass", [](RingState& s) { s.passes.clear(); }},
+            {"a pass too many", [](RingState& s) { s.passes.emplace_back(); }},
+            {"no image", [](RingState& s) { s.image.clear(); }},
+            {"a longer image", [](RingState& s) { s.image.resize(s.image.size() + 1); }},
+            {"fewer pixels", [](RingState& s) { s.pixels.resize(1); }},
+            {"more pixels", [](RingState& s) { s.pixels.resize(2 * s.pixels.size()); }},
+            {"other marks", [](RingState& s) { s.marks.resize(s.marks.size() + 1); }},
+            {"no cycles", [](RingState& s) { s.passes[0].cycles.clear(); }},
+            {"more events", [](RingState& s) { s.passes[0].events.resize(2 * s.passes[0].events.size()); }},
+            {"no costs", [](RingState& s) { s.passes[0].costs.clear(); }},
+            {"other costs of all", [](RingState& s) { s.all_costs.resize(s.all_costs.size() + 1); }}};
+        for (const auto& [what, damage] : damages) {
+            CAPTURE(what);
+            RingState damaged = kept;
+            damage(damaged);
+            Keeper last(1 << 30, state_bytes(damaged, of));
+            CHECK_THROWS_WITH(renderer.render({}, last.keeping()), "damaged");
+        }
+    }
+}
+
 TEST_CASE("a state that is damaged anywhere is refused", "[ring][keep]") {
     const std::uint32_t seed = 21;
     CAPTURE(seed);
@@ -169,7 +211,7 @@ TEST_CASE("a state that is damaged anywhere is refused", "[ring][keep]") {
     state.passes[0].events = {1, 2};
     const StateSettings settings = {{"name", "value \"x\""}};
     const std::string bytes = state_bytes(state, settings);
-    const RingState read = read_state(bytes, settings);
+    const RingState read = read_state(bytes, settings, state);
     CHECK(read.next == 7);
     CHECK((read.image == state.image));
     CHECK((read.passes[0].events == state.passes[0].events));
@@ -181,10 +223,10 @@ TEST_CASE("a state that is damaged anywhere is refused", "[ring][keep]") {
         else
             damaged[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
         CAPTURE(i);
-        CHECK_THROWS_AS(read_state(damaged, settings), UserError);
+        CHECK_THROWS_AS(read_state(damaged, settings, state), UserError);
     }
-    CHECK_THROWS_WITH(read_state(bytes, {{"name", "other"}}), "was rendered with name value \"x\", not other");
-    CHECK_THROWS_WITH(read_state(bytes, {{"new", "one"}}), "'new' is missing");
+    CHECK_THROWS_WITH(read_state(bytes, {{"name", "other"}}, state), "was rendered with name value \"x\", not other");
+    CHECK_THROWS_WITH(read_state(bytes, {{"new", "one"}}, state), "'new' is missing");
 }
 
 }  // namespace

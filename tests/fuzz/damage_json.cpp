@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/fuzz/mutate.hpp"
+
+namespace raya::fuzz {
+namespace {
+
+using Document = nlohmann::ordered_json;
+
+// What stands for text that the library would not write; the rest of the value is that text.
+constexpr const char* kRaw = "\x01raw";
+
+const char* const kRawValues[] = {"1e400",
+                                  "-1e400",
+                                  "1e308",
+                                  "1e-400",
+                                  "-0",
+                                  "-0.0",
+                                  "18446744073709551615",
+                                  "18446744073709551616",
+                                  "1E5",
+                                  "-9223372036854775808",
+                                  "-9223372036854775809",
+                                  "99999999999999999999999999",
+                                  "1.5e3",
+                                  "01",
+                                  "1.",
+                                  "nan",
+                                  "Infinity",
+                                  "\"\\ud800\"",
+                                  "\"\\u0000\"",
+                                  "\"\xff\xfe\"",
+                                  "\"\\x\"",
+                                  "{\"a\":1,\"a\":2}",
+                                  "[1,]",
+                                  "\"open",
+                                  "//",
+                                  "tru"};
+
+const std::int64_t kWhole[] = {0,     1,          -1,         2,          3,          4,         7,
+                               8,     16,         255,        256,        1024,       16384,     16385,
+                               65536, 2147483647, 2147483648, 4294967295, 4294967296, INT64_MAX, INT64_MIN};
+
+const char* const kTexts[] = {"",
+                              "a",
+                              "raya render",
+                              "raya bench",
+                              "raya verify",
+                              "raya frames",
+                              "raya bench --tune",
+                              "cyclic",
+                              "cyclic:3",
+                              "column",
+                              "rows",
+                              "blocks",
+                              "grid:2x2",
+                              "grid:0x4",
+                              "tiles:2x2",
+                              "random:7",
+                              "dynamic:4",
+                              "hybrid:4,1,0.5",
+                              "block",
+                              "fp32",
+                              "spa22",
+                              "e5m10",
+                              "none",
+                              "grid",
+                              "bvh",
+                              "ring",
+                              "torus",
+                              "reduced",
+                              "<script>",
+                              "&\"'",
+                              "\x7f\x1b[31m",
+                              "\xf0\x9f\x98\x80",
+                              "iVBORw0KGgo=",
+                              "474a384374e81c5144a0e5405232a750"};
+
+// Every value of a document, with what holds it.
+struct Spot {
+    Document* holder;  // null: the document itself
+    std::string key;
+    std::size_t index = 0;
+};
+
+void add_spots(Document& value, std::vector<Spot>& spots) {
+    if (value.is_object())
+        for (auto& [key, member] : value.items()) {
+            spots.push_back({&value, key});
+            add_spots(member, spots);
+        }
+    if (value.is_array())
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            spots.push_back({&value, {}, i});
+            add_spots(value[i], spots);
+        }
+}
+
+Document& value_at(const Spot& spot) {
+    return spot.holder->is_object() ? (*spot.holder)[spot.key] : (*spot.holder)[spot.index];
+}
+
+Document wrapped(Document value, std::size_t levels) {
+    for (; levels > 0; --levels) value = Document::array({std::move(value)});
+    return value;
+}
+
+Document other_value(const Document& value, Random& random) {
+    if (random.one_in(6)) return std::string(kRaw) + random.pick(kRawValues);
+    if (random.one_in(8)) {
+        static const std::size_t kLevels[] = {1, 2, 98, 99, 100, 101, 300};
+        return wrapped(value, random.pick(kLevels));
+    }
+    const bool other_kind = random.one_in(3);
+    if (value.is_number_integer() != other_kind) return random.pick(kWhole);
+    if (value.is_number() != other_kind) return static_cast<double>(random.pick(kWhole)) / 3;
+    if (value.is_string() != other_kind) return random.pick(kTexts);
+    static const Document kOthers[] = {nullptr, true, false, Document::array(), Document::object(), 1.5};
+    return random.pick(kOthers);
+}
+
+void mutate_text(Document& value, Random& random) {
+    std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    if (random.one_in(4)) text.insert(random.below(text.size() + 1), std::string(1 + random.below(300), 'x'));
+    mutate_bytes(text, text.size() + 16);
+    value = text;
+}
+
+// Lists of three that become lists of hundreds make pages large: of lists little is repeated.
+void repeat(const Spot& spot, const Document& value, Random& random) {
+    if (spot.holder->is_array())
+        for (std::size_t n = random.below(3); n > 0; --n)
+            spot.holder->insert(spot.holder->begin() + static_cast<std::ptrdiff_t>(spot.index), value);
+    else
+        (*spot.holder)[spot.key + "2"] = value;
+}
+
+void damage(Document& document, Random& random) {
+    std::vector<Spot> spots;
+    add_spots(document, spots);
+    if (spots.empty()) {
+        document = other_value(document, random);
+        return;
+    }
+    const Spot spot = random.pick(spots);
+    Document& value = value_at(spot);
+    switch (random.below(7)) {
+        case 0:
+            spot.holder->is_object() ? static_cast<void>(spot.holder->erase(spot.key)) : spot.holder->erase(spot.index);
+            break;
+        case 1:
+            repeat(spot, Document(value), random);
+            break;
+        case 2:
+            value = Document(value_at(random.pick(spots)));
+            break;
+        case 3:
+            mutate_text(value, random);
+            break;
+        default:
+            value = other_value(value, random);
+    }
+}
+
+std::string text_of(const Document& document, Random& random) {
+    std::string text = document.dump(random.one_in(3) ? -1 : 1, ' ', false, Document::error_handler_t::replace);
+    const std::string begin = "\"\\u0001raw";
+    for (std::size_t at; (at = text.find(begin)) != std::string::npos;) {
+        std::size_t end = at + begin.size();
+        std::string raw;
+        for (; end < text.size() && text[end] != '"'; ++end) raw += text[end] == '\\' ? text[++end] : text[end];
+        text.replace(at, end + 1 - at, raw);
+    }
+    return text;
+}
+
+}  // namespace
+
+bool damage_json(std::string& text, Random& random) {
+    Document document = Document::parse(text, nullptr, false);
+    if (document.is_discarded()) return false;
+    for (std::size_t changes = 1 + random.below(2); changes > 0; --changes) damage(document, random);
+    text = text_of(document, random);
+    return true;
+}
+
+}  // namespace raya::fuzz

@@ -1,0 +1,32 @@
+// Records of frames, as `raya render --frames` reads them: any bytes are a record or refused; one that was read
+// survives being written.
+#include "host/cli/frame_record.hpp"
+#include "host/error.hpp"
+#include "host/files/read_file.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace raya;
+using namespace raya::fuzz;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const ScratchFolder folder;
+    static const std::string frame = folder.write("frame-0001.ppm", "P6");
+    const std::string file = folder.write("frames.json", text_of(data, size));
+    try {
+        FrameRecord record(file);
+        for (const std::uint32_t number : {0u, 1u, UINT32_MAX}) {
+            record.find(number, "settings", {});
+            record.find(number, "settings", {frame});
+        }
+        record.write();
+        const std::string written = read_file(file);
+        FrameRecord again(file);
+        again.write();
+        if (read_file(file) != written) complain("changed by being written and read", written);
+        again.add({.number = 1, .settings = "settings", .pixels = {}, .files = {}}, {frame});
+        if (again.find(1, "settings", {frame}) == nullptr) complain("a frame that was added is not found", written);
+    } catch (const UserError& error) {
+        check_refusal(error.what(), file);
+    }
+    return 0;
+}

@@ -1,0 +1,44 @@
+// Reports, as `raya page` and `raya bench --compare` read them: any bytes become a page or rows, or are refused.
+#include "host/cli/page.hpp"
+#include "host/error.hpp"
+#include "host/report/bench_compare.hpp"
+#include "host/report/bench_report.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace {
+
+using namespace raya;
+using namespace raya::fuzz;
+
+void check_page(std::string_view text) try {
+    const std::string page = page_of_report(std::string(text), "report.json");
+    if (!page.ends_with("</html>\n")) complain("a page that is cut short", page.substr(0, 200));
+} catch (const UserError& error) {
+    check_refusal(error.what(), "report.json");
+}
+
+void check_bench(const ScratchFolder& folder, std::string_view text) {
+    const std::string file = folder.write("bench.json", text);
+    try {
+        const BenchReport report = read_bench_report(file);
+        const std::string written = bench_report_text(report);
+        const BenchReport again = read_bench_report(folder.write("again.json", written));
+        // Seconds are kept as milliseconds, which may round.
+        if (bench_report_text(read_bench_report(folder.write("again.json", bench_report_text(again)))).size() + 64 <
+            written.size())
+            complain("changed by being written and read", written);
+        const BenchComparison same = compare_bench(report, again, 1e-6);
+        if (same.slower != 0 || same.other_images != 0) complain("differs from itself", same.text);
+    } catch (const UserError& error) {
+        check_refusal(error.what(), file);
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const ScratchFolder folder;
+    check_page(text_of(data, size));
+    check_bench(folder, text_of(data, size));
+    return 0;
+}

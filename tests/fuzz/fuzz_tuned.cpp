@@ -1,0 +1,65 @@
+// Tuned files, as `raya render` reads them and `raya bench --tune` adds to them: any bytes are used, or ignored with a
+// warning.
+#include "host/error.hpp"
+#include "host/tune/store.hpp"
+#include "host/version.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+namespace {
+
+using namespace raya;
+using namespace raya::fuzz;
+
+const DeviceInfo kDevice = {.name = "device",
+                            .platform = "platform",
+                            .version = "version",
+                            .driver = "driver",
+                            .type = "cpu",
+                            .compute_units = 2,
+                            .local_memory_bytes = 1 << 16,
+                            .global_memory_bytes = 1u << 30,
+                            .max_allocation_bytes = 1u << 28,
+                            .max_group_size = 4096};
+
+/// The corpus has @version@ where a file names the version of raya that wrote it.
+std::string with_version(std::string text) {
+    constexpr std::string_view kPlace = "@version@";
+    if (const std::size_t at = text.find(kPlace); at != std::string::npos)
+        text.replace(at, kPlace.size(), raya_version());
+    return text;
+}
+
+void check_choices(const std::string& file) {
+    int warnings = 0;
+    const TunedSource source = kept_choices([&](const std::string& warning) {
+        check_refusal(warning, file);
+        ++warnings;
+    });
+    for (const bool torus : {false, true})
+        for (const std::uint32_t accel : {0u, 1u, 2u}) {
+            const auto choice = source(kDevice, {.torus = torus, .accel = accel, .fp32 = true});
+            if (choice && warnings > 0) complain("used in spite of a warning", choice->origin);
+        }
+    if (warnings > 1) complain("warned more than once", file);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const ScratchFolder folder;
+    ::setenv("XDG_CACHE_HOME", folder.path("").c_str(), 1);
+    static const std::string file = tuned_place(kDevice).string();
+    const std::string text = with_version(std::string(text_of(data, size)));
+    folder.write("raya/" + tuned_file_name(kDevice), text);
+    check_choices(file);
+    try {
+        const TunedFile read = read_tuned(text, "tuned.json", kDevice);
+        const std::string written = tuned_text(kDevice, read);
+        if (tuned_text(kDevice, read_tuned(written, "tuned.json", kDevice)) != written)
+            complain("changed by being written and read", written);
+        keep_tuned(kDevice, {.date = "2026-11-24", .entries = {TunedEntry{.what = {}, .values = {}, .scene = "s"}}});
+    } catch (const UserError& error) {
+        if (std::string_view(error.what()).empty()) complain("a refusal without a reason", text);
+    }
+    return 0;
+}

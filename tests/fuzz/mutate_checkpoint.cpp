@@ -1,0 +1,43 @@
+// Checkpoints whose header or values are damaged and whose hash is right, so that the reader gets beyond it.
+#include <algorithm>
+
+#include "host/files/bytes_hash.hpp"
+#include "tests/fuzz/mutate.hpp"
+
+namespace {
+
+using namespace raya;
+using namespace raya::fuzz;
+
+constexpr std::size_t kHashLetters = 32;
+
+void damage_values(std::string& values, Random& random) {
+    static const std::uint64_t kCounts[] = {
+        0, 1, 2, 3, 16, 1u << 20, UINT32_MAX, UINT64_MAX, UINT64_MAX / 8, UINT64_MAX / 8 + 1, 1ull << 61, 1ull << 63};
+    if (values.size() < sizeof kCounts[0] || random.one_in(3)) return mutate_bytes(values);
+    if (random.one_in(4)) return values.resize(random.below(values.size()));
+    const std::size_t at = random.below(values.size() / 8) * 8;
+    std::memcpy(values.data() + at, &random.pick(kCounts), sizeof kCounts[0]);
+}
+
+}  // namespace
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
+    Random random(seed);
+    std::string text(reinterpret_cast<const char*>(data), size);
+    const std::size_t magic = text.find('\n'), header = magic == std::string::npos ? magic : text.find('\n', magic + 1);
+    if (header == std::string::npos || text.size() < header + 1 + kHashLetters || random.one_in(10)) {
+        mutate_bytes(text);
+        return store(text, data, most);
+    }
+    std::string line = text.substr(magic + 1, header - magic - 1);
+    std::string values = text.substr(header + 1, text.size() - header - 1 - kHashLetters);
+    if (random.one_in(2))
+        damage_values(values, random);
+    else if (!damage_json(line, random))
+        mutate_bytes(line);
+    std::replace(line.begin(), line.end(), '\n', ' ');  // the header is one line
+    std::string whole = text.substr(0, magic + 1) + line + "\n" + values;
+    if (whole.size() + kHashLetters > most) whole.resize(most - kHashLetters);
+    return store(whole + bytes_hash(whole), data, most);
+}

@@ -1,0 +1,11 @@
+// JSON files whose values are damaged, and once in a while their bytes.
+#include "tests/fuzz/mutate.hpp"
+
+using namespace raya::fuzz;
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
+    Random random(seed);
+    std::string text(reinterpret_cast<const char*>(data), size);
+    if (random.one_in(8) || !damage_json(text, random)) mutate_bytes(text);
+    return store(text, data, most);
+}
