@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "host/cl/error_names.hpp"
+#include "host/files/progress.hpp"
 #include "host/files/verbosity.hpp"
 
 namespace raya {
@@ -55,7 +56,7 @@ Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
     std::vector<std::string> all = options;
     if (noted_arguments_ > 0) all.emplace_back("-cl-kernel-arg-info");  // names of arguments; the code stays the same
-    if (const char* more = std::getenv("RAYA_BUILD_OPTIONS"); more != nullptr && *more != '\0') all.emplace_back(more);
+    if (const std::string more = user_build_options(); !more.empty()) all.push_back(more);
     const auto build = [&] {
         const StepLog::Step building = step("build " + name);
         Program program(context_, device_, name, source, all);
@@ -68,6 +69,8 @@ Program Session::build(const std::string& name, const std::string& source,
     return known != kept_programs_->end() ? known->second
                                           : kept_programs_->emplace(std::pair(all, source), build()).first->second;
 }
+
+std::jthread Session::compiling() const { return announces_ ? raya::announce_compiling(info_.name) : std::jthread(); }
 
 cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const {
     if (count == 0) throw std::invalid_argument(fmt::format("buffer '{}': OpenCL has no buffers of no elements", name));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -163,6 +164,12 @@ class Session {
         noted_arguments_ = launches;
     }
 
+    /// From now on compiling() says what it does.
+    void announce_compiling() { announces_ = true; }
+
+    /// To be kept while kernels are compiled and first launched, see announce_compiling() of host/files/progress.hpp.
+    [[nodiscard]] std::jthread compiling() const;
+
     /// A step of the host, from now to the end of the scope that it is kept in; for the log of observe(), else nothing.
     [[nodiscard]] StepLog::Step step(const std::string& name) const { return StepLog::Step(steps_, name); }
 
@@ -231,6 +238,7 @@ class Session {
     Profile profile_;
     std::unique_ptr<KeptPrograms> kept_programs_;  // null: none are kept
     std::map<std::string, std::uint32_t> launch_limits_;
+    bool announces_ = false;
     StepLog* steps_ = nullptr;
     std::size_t noted_arguments_ = 0;  // launches whose arguments are still to be kept
 };

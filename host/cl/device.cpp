@@ -124,8 +124,9 @@ std::vector<cl::Device> devices_of(const cl::Platform& platform) {
 std::vector<cl::Device> all_devices() {
     std::vector<cl::Device> all;
     for (const cl::Platform& platform : all_platforms()) {
-        const std::vector<cl::Device> devices = devices_of(platform);
-        all.insert(all.end(), devices.begin(), devices.end());
+        for (const cl::Device& device : devices_of(platform))  // a driver with two ICD entries lists its devices twice
+            if (std::none_of(all.begin(), all.end(), [&](const cl::Device& other) { return other() == device(); }))
+                all.push_back(device);
     }
     return all;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <utility>
 
 #include "host/cl/driver_cache.hpp"
@@ -35,6 +36,11 @@ std::string failure_text(const cl::Error& error, const std::string& what, const 
 }
 
 }  // namespace
+
+std::string user_build_options() {
+    const char* const options = std::getenv("RAYA_BUILD_OPTIONS");
+    return options != nullptr ? options : "";
+}
 
 Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
                  const std::vector<std::string>& options)

@@ -9,6 +9,9 @@
 
 namespace raya {
 
+/// What RAYA_BUILD_OPTIONS adds to the options of every program.
+std::string user_build_options();
+
 /// A built program. Made by Session::build.
 class Program {
   public:

@@ -12,6 +12,7 @@
 #include "host/cli/bench_tables.hpp"
 #include "host/cli/bench_tune.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
@@ -45,23 +46,12 @@ struct BenchCommand {
     TuneCommand tune;
 };
 
-// Refuses what could not be compared or written in the end. Returns the baseline, empty where there is none to be.
+// Refuses what could not be compared in the end. Returns the baseline, empty where there is none to be.
 BenchReport checked_files(const BenchCommand& command) {
     if (!(command.tolerance >= 0 && command.tolerance <= 100))
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance));
-    if (!command.report.empty()) check_writable(command.report);
-    if (!command.page.empty()) check_page_target("--page", command.page);
-    if (!command.page.empty() && command.page == command.report)
-        throw UserError(fmt::format("{}: named by --report and --page: name another file", command.page));
+    if (!command.page.empty()) check_page_name("--page", command.page);
     if (command.baseline.empty()) return {};
-    std::error_code error;  // of a file that is not there, and so not the other one
-    for (const std::string& file : {command.report, command.page})
-        if (!file.empty() && !is_standard_stream(command.baseline) &&
-            std::filesystem::equivalent(file, command.baseline, error))
-            throw UserError(fmt::format(
-                "{}: named by {} and --compare; a baseline is not written over by the run "
-                "that is held against it: name another {}",
-                file, file == command.report ? "--report" : "--page", file == command.report ? "report" : "page"));
     return read_bench_report(command.baseline);
 }
 
@@ -154,9 +144,11 @@ Scene scene_of(const BenchCommand& command) {
 
 void bench(const CLI::App& parsed, BenchCommand command) {
     check_tune_options(parsed, command.tune);
+    Warnings warnings;
+    warn_of_build_options(warnings);
     if (command.tune.wanted && is_standard_stream(command.render.scene))
         throw UserError("bench --tune -: every candidate reads the scene in a process of its own; name a file");
-    if (command.tune.wanted) return bench_tune(command.render, command.ways, command.report, command.tune);
+    if (command.tune.wanted) return bench_tune(parsed, command.render, command.ways, command.report, command.tune);
     refuse_ignored(parsed, command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
@@ -175,6 +167,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     std::optional<ProgressBar> bar(std::in_place, true, "preparing");
     const cl::Device device = choose_device(command.render.device);
     Session session(device);
+    session.announce_compiling();
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
     check_comparable(command, baseline, bench_report(rows, session.device()));
     bar->stage("taking samples");
@@ -209,9 +202,8 @@ void add_bench_command(CLI::App& program) {
                              "Whole renders of a scene, every ray against all objects and down a tree of boxes"}});
     const auto options = std::make_shared<BenchCommand>();
     OptionGroup group(*command, "What is measured");
-    add_value(*command, "SCENE", options->render.scene,
-              "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512")
-        ->type_name("SCENE.nff");
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
+             "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512");
     add_render_options(*command, options->render);
     add_value(*command, "--ways", options->ways,
               "Time whole renders in place of the trace kernel, in these ways, with commas between them: none, "
@@ -235,17 +227,14 @@ void add_bench_command(CLI::App& program) {
         ->type_name("N")
         ->capture_default_str();
     group.next("Report and comparison");
-    add_value(*command, "--report", options->report,
-              "Write the rows, for a later --compare; -: stdout, and the tables on stderr")
-        ->type_name("FILE.json");
-    add_value(*command, "--page", options->page,
-              "Write rates, comparison and roofline as a page for a browser; it is what raya page makes of the report. "
-              "Measures the device's peak for each format and width of lanes, some seconds each")
-        ->type_name("FILE.html");
-    add_value(*command, "--compare", options->baseline,
-              "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
-              "image another one")
-        ->type_name("FILE.json");
+    add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
+             "Write the rows, for a later --compare; -: stdout, and the tables on stderr");
+    add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
+             "Write rates, comparison and roofline as a page for a browser; it is what raya page makes of the report. "
+             "Measures the device's peak for each format and width of lanes, some seconds each");
+    add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
+             "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
+             "image another one");
     add_value(*command, "--tolerance", options->tolerance,
               "With --compare: percent of its rate, 0..100, that a row may lose; it is slower where its best "
               "and its median have both lost more")

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "host/cl/device.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
@@ -185,13 +186,14 @@ void check_tune_options(const CLI::App& parsed, const TuneCommand& tune) {
     check_range("--candidate-seconds", tune.candidate_seconds, 1, 3600);
 }
 
-void bench_tune(const RenderOptions& render, const std::vector<std::string>& ways, const std::string& report,
-                const TuneCommand& tune) {
+void bench_tune(const CLI::App& parsed, const RenderOptions& render, const std::vector<std::string>& ways,
+                const std::string& report, const TuneCommand& tune) {
     if (!tune.trial.empty()) return run_as_trial(render, tune);
-    if (!report.empty()) check_writable(report);
     const std::vector<Workload> workloads = workloads_of(render, ways);
+    if (!render.scene.empty()) read_scene(render.scene, render.strict);  // refuses what every candidate would refuse
     const DeviceInfo device = device_info(choose_device(render.device));
-    std::filesystem::path file = tuned_place(device);
+    const std::filesystem::path file = tuned_place(device);
+    check_files(parsed, {{"--tune", file}});
     fmt::print("tuning {} ({}, driver {}): {}, {:.0f} s\n", device.name, device.platform, device.driver,
                counted(workloads.size(), "workload"), tune.seconds);
     std::fflush(stdout);

@@ -22,7 +22,7 @@ void check_tune_options(const CLI::App& parsed, const TuneCommand& tune);
 
 /// Tunes the device for `ways` in the formats of `render`, for the usual workloads where both are empty; writes
 /// `report` where it names a file. In the process of a trial runs that.
-void bench_tune(const RenderOptions& render, const std::vector<std::string>& ways, const std::string& report,
-                const TuneCommand& tune);
+void bench_tune(const CLI::App& parsed, const RenderOptions& render, const std::vector<std::string>& ways,
+                const std::string& report, const TuneCommand& tune);
 
 }  // namespace raya

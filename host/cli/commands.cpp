@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "host/cl/driver_call.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse_failure.hpp"
@@ -167,6 +168,12 @@ std::shared_ptr<CLI::App> whole_program(Ranks& ranks, const std::string& build) 
     add_help_command(program);
     program.footer(std::string(kExitCodes) + kEnvironment);  // not of the commands, which take it when they are added
     add_verbosity_options(program, ranks);
+    // Before the callback of any command. Rank 0 writes; elsewhere folders need not exist.
+    program.parse_complete_callback([&program, &ranks] {
+        const CLI::App* command = &program;
+        while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+        if (ranks.first()) check_files(*command);
+    });
     return made;
 }
 

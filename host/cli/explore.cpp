@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
@@ -34,15 +35,6 @@ struct ExploreCommand {
     std::string page;
 };
 
-void check_page(const ExploreCommand& command) {
-    const std::string& page = command.page;
-    check_page_target("-o", page);
-    if (is_standard_stream(command.render.scene) || is_standard_stream(page)) return;
-    std::error_code error;
-    if (std::filesystem::canonical(command.render.scene, error) == written_file(page) && !error)
-        throw UserError(fmt::format("-o {}: that is the scene; name another file", page));
-}
-
 RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
     RingSettings settings = ring_settings(command.render, scene);
     if (settings.dynamic)
@@ -56,10 +48,15 @@ RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
     return settings;
 }
 
+// Without its folder: a page is sent to others.
+std::string scene_name(const ExploreCommand& command) {
+    return std::filesystem::path(input_name(command.render.scene)).filename().string();
+}
+
 // What renders the same picture; whoever repeats it adds mapping and PEs.
 std::string command_of(const ExploreCommand& command, const RingSettings& settings) {
     const RenderOptions& o = command.render;
-    std::string text = "raya render " + quoted(o.scene) + " -o image.png";
+    std::string text = "raya render " + quoted(scene_name(command)) + " -o image.png";
     const auto add = [&](const char* option, const std::string& value) {
         if (!value.empty()) text += fmt::format(" {} {}", option, quoted(value));
     };
@@ -78,7 +75,7 @@ Exploration exploration_of(const ExploreCommand& command, const RingSettings& se
                            const RingResult& result) {
     const std::string accel =
         settings.accel.kind == AccelKind::kNone ? "" : ", accelerator " + accel_text(settings.accel);
-    return {.scene = input_name(command.render.scene),
+    return {.scene = scene_name(command),
             .command = command_of(command, settings),
             .settings = fmt::format("{}, {}, {} bounces{}", settings.machine.name, format_name(settings.format),
                                     settings.bounces, accel),
@@ -91,7 +88,7 @@ Exploration exploration_of(const ExploreCommand& command, const RingSettings& se
 }
 
 void explore(const ExploreCommand& command) {
-    check_page(command);
+    check_page_name("-o", command.page);
     std::optional<ProgressBar> bar(std::in_place, true, "reading the scene");
     SceneInput input = read_scene(command.render.scene, command.render.strict);
     change_view(command.render.view, input.scene);
@@ -100,6 +97,7 @@ void explore(const ExploreCommand& command) {
     warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     bar->stage("preparing");
     const TunedUse tuned = use_tuned(command.render.no_tuned, &input.warnings);
+    warn_of_build_options(input.warnings);
     Session session(choose_device(command.render.device), Timing::kOff);
     RingRenderer renderer(session, input.scene, settings);
     warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
@@ -130,13 +128,12 @@ void add_explore_command(CLI::App& program) {
                              "The same of another scene, which opens with 64 PEs and blocks of scan lines"}});
     const auto options = std::make_shared<ExploreCommand>();
     const OptionGroup group(*command, kFiles);
-    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
-        ->required()
-        ->type_name("SCENE.nff");
-    add_value(*command, "-o,--output", options->page,
-              "Page to write: one file for a browser, below 1 MB, that needs no network; -: stdout")
-        ->required()
-        ->type_name("FILE.html");
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
+             "Scene in NFF, as the SPD programs write it; -: stdin")
+        ->required();
+    add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
+             "Page to write: one file for a browser, below 1 MB, that needs no network; -: stdout")
+        ->required();
     add_render_options(*command, options->render, false);
     command->get_option("--mapping")
         ->description(

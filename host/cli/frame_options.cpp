@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "host/cli/camera_path.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/machine/unit_text.hpp"
@@ -56,10 +57,9 @@ void add_frame_options(CLI::App& command, FrameOptions& o) {
               "Of --frames: the eye goes so many degrees round the axis through --at along --up, anticlockwise seen "
               "from above, an equal part before each frame but the first; -360000..360000")
         ->type_name("DEGREES");
-    add_value(command, "--camera-path", o.camera_path,
-              "A camera for each frame: a line of FILE each, with any of from, at, up and angle as on the command "
-              "line, such as: from 1,2,3 angle 40; the others stay. Empty lines and what follows # are passed over")
-        ->type_name("FILE");
+    add_file(command, FileUse::kRead, "--camera-path", o.camera_path, "FILE",
+             "A camera for each frame: a line of FILE each, with any of from, at, up and angle as on the command "
+             "line, such as: from 1,2,3 angle 40; the others stay. Empty lines and what follows # are passed over");
 }
 
 FrameRange parse_frames(const std::string& text) {

@@ -1,8 +1,12 @@
 #include "host/cli/frame_record.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <optional>
 
 #include "host/error.hpp"
@@ -53,13 +57,42 @@ std::map<std::uint32_t, FrameEntry> entries_of(const Json& record) {
     return entries;
 }
 
+/// The folder of a file, locked while this lives, where the file system has locks: no file is left of it.
+class FolderLock {
+  public:
+    explicit FolderLock(const fs::path& file)
+        : folder_(::open(fs::absolute(file).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+        int locked = 0;
+        while ((locked = ::flock(folder_, LOCK_EX)) != 0 && errno == EINTR) continue;
+        if (locked != 0) refuse_or_go_on(file);
+    }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+    ~FolderLock() { ::close(folder_); }
+
+  private:
+    void refuse_or_go_on(const fs::path& file) const {
+        const int error = errno;
+        if (error == ENOLCK || error == EOPNOTSUPP || error == ENOSYS || error == EINVAL) return;
+        if (folder_ >= 0) ::close(folder_);
+        throw UserError(
+            fmt::format("cannot lock the folder of '{}': {}", file.string(), std::generic_category().message(error)));
+    }
+
+    int folder_;
+};
+
 }  // namespace
 
-FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) {
+FrameRecord::FrameRecord(fs::path file) : file_(std::move(file)) { read(); }
+
+void FrameRecord::read() {
     if (!fs::exists(file_)) return;
     const JsonSource from{file_.string(),
                           "move it, or give -o another name: the record of the frames is written to this file"};
-    entries_ = read_json(json_text(file_, from), from, entries_of);
+    std::map<std::uint32_t, FrameEntry> entries = read_json(json_text(file_, from), from, entries_of);
+    for (const std::uint32_t number : added_) entries.insert_or_assign(number, entries_.at(number));
+    entries_ = std::move(entries);
 }
 
 const FrameEntry* FrameRecord::find(std::uint32_t number, const std::string& settings,
@@ -77,9 +110,11 @@ const FrameEntry* FrameRecord::find(std::uint32_t number, const std::string& set
 
 const FrameEntry& FrameRecord::add(FrameEntry entry, const std::vector<std::string>& files) {
     for (const std::string& file : files) entry.files.emplace_back(name_of(file), bytes_hash(read_file(file)));
-    const auto added = entries_.insert_or_assign(entry.number, std::move(entry)).first;
+    const std::uint32_t number = entry.number;
+    entries_.insert_or_assign(number, std::move(entry));
+    added_.insert(number);
     if (Clock::now() - written_ >= 20 * writing_) write();
-    return added->second;
+    return entries_.at(number);
 }
 
 std::string FrameRecord::name_of(const std::string& file) const {
@@ -89,6 +124,8 @@ std::string FrameRecord::name_of(const std::string& file) const {
 
 void FrameRecord::write() {
     const Clock::time_point start = Clock::now();
+    const FolderLock lock(file_);
+    read();
     Json frames = Json::list();
     for (const auto& [number, entry] : entries_) frames.push_back(json_of(entry));
     write_whole_file(file_, Json{{"kind", kKind}, {"raya", raya_version()}, {"frames", frames}}.dump(2) + "\n");

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,18 +32,21 @@ class FrameRecord {
     const FrameEntry* find(std::uint32_t number, const std::string& settings,
                            const std::vector<std::string>& files) const;
 
-    /// Takes in a frame whose files have been written, `entry.files` aside, in place of an older one, and writes the
-    /// record, unless that would take over a twentieth of the time: then a later one does, or write().
+    /// Adds a frame whose files have been written, `entry.files` aside, replacing an older one, and writes the record,
+    /// unless that would take over a twentieth of the time: then a later call does, or write().
     const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
 
+    /// Writes the frames added here and those that other processes have written since: one process at a time merges.
     void write();
 
   private:
     using Clock = std::chrono::steady_clock;
+    void read();
     std::string name_of(const std::string& file) const;
 
     std::filesystem::path file_;
     std::map<std::uint32_t, FrameEntry> entries_;  // by their numbers
+    std::set<std::uint32_t> added_;                // here, and so newer than the file's
     Clock::time_point written_{};
     Clock::duration writing_{};  // that the last one took
 };

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -26,7 +27,6 @@ struct GenerateOptions {
 
 template <class Make>
 void write_scene(const GenerateOptions& options, Make&& make) {
-    check_writable(options.output);
     ProgressBar bar(true, "generating");
     const Scene scene = make();
     bar.stage("writing");
@@ -39,7 +39,8 @@ CLI::App* add_kind(CLI::App& command, GenerateOptions& options, const std::strin
     add_examples(*kind, examples);
     kind->option_defaults()->group("Scene");
     const OptionGroup group(*kind, kFiles);
-    add_value(*kind, "-o,--output", options.output, "NFF file to write; -: stdout")->required()->type_name("SCENE.nff");
+    add_file(*kind, FileUse::kWritten, "-o,--output", options.output, "SCENE.nff", "NFF file to write; -: stdout")
+        ->required();
     return kind;
 }
 

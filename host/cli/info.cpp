@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/scene_input.hpp"
@@ -31,9 +32,9 @@ constexpr std::array<const char*, 16> kOfRunning = {
     "--inject", "--returns", "--threshold", "--packet-words", "--link-exchange", "--packets",  "--replay",   "--async"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
-    add_value(command, "SCENE", options.render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
-        ->required()
-        ->type_name("SCENE.nff");
+    add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE.nff",
+             "Scene in NFF, as the SPD programs write it; -: stdin")
+        ->required();
     OptionGroup group(command, kFiles);
     command.add_flag("--json", options.json, "Print it as JSON, for programs");
     add_render_options(command, options.render);

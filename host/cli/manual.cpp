@@ -8,6 +8,7 @@
 
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
@@ -54,7 +55,6 @@ void run_completion(const CLI::App& program, const CompletionCommand& command) {
         throw UserError(fmt::format("{}: must be {}", command.shell, fmt::join(shells, ", ")));
     const std::string script = completion_script(command_text(program), command.shell);
     if (command.file.empty()) return fmt::print("{}", script);
-    check_writable(command.file);
     write_whole_file(command.file, script);
 }
 
@@ -70,9 +70,8 @@ void add_manual_command(CLI::App& program) {
     const OptionGroup group(*command, kFiles);
     add_value(*command, "COMMAND", options->command, "Whose page; default: the one of raya, which names the others")
         ->type_name("COMMAND");
-    add_value(*command, "-o,--output", options->folder,
-              "Write all pages into this folder, raya.1, raya-render.1 and so on")
-        ->type_name("DIR");
+    add_file(*command, FileUse::kWrittenFolder, "-o,--output", options->folder, "DIR",
+             "Write all pages into this folder, raya.1, raya-render.1 and so on");
     command->callback([options, &program] { run_manual(program, *options); });
 }
 
@@ -88,7 +87,7 @@ void add_completion_command(CLI::App& program) {
     add_value(*command, "SHELL", options->shell, "The shell: bash, zsh or fish")
         ->required()
         ->type_name("bash|zsh|fish");
-    add_value(*command, "-o,--output", options->file, "Write it to a file")->type_name("FILE");
+    add_file(*command, FileUse::kWritten, "-o,--output", options->file, "FILE", "Write it to a file");
     command->callback([options, &program] { run_completion(program, *options); });
 }
 

@@ -14,31 +14,35 @@ void refuse_value(const std::string& option, const std::string& value, const cha
                                   : fmt::format("{} {}: {}; {}: {}", option, value, reason, option, help));
 }
 
-namespace {
+// In a validator that is not active.
+CLI::Option* keep_note(CLI::Option* option, const char* name, const std::string& text) {
+    try {
+        option->get_validator(name)->description(text);
+        return option;
+    } catch (const CLI::OptionNotFound&) {
+        return option->check(CLI::Validator(text).name(name).active(false));
+    }
+}
+
+std::string note_of(CLI::Option& option, const char* name) {
+    try {
+        CLI::Validator kept = *option.get_validator(name);
+        return kept.active().get_description();
+    } catch (const CLI::OptionNotFound&) {
+        return "";
+    }
+}
 
 constexpr const char* kWords = "words";
 
-}  // namespace
-
-// A validator that is not active neither refuses values nor shows in help.
 CLI::Option* offer_words(CLI::Option* option, const std::vector<std::string>& words) {
-    const std::string text = fmt::format("{}", fmt::join(words, " "));
-    try {
-        option->get_validator(kWords)->description(text);
-        return option;
-    } catch (const CLI::OptionNotFound&) {
-        return option->check(CLI::Validator(text).name(kWords).active(false));
-    }
+    return keep_note(option, kWords, fmt::format("{}", fmt::join(words, " ")));
 }
 
 std::vector<std::string> offered_words(CLI::Option& option) {
     std::vector<std::string> words;
-    try {
-        CLI::Validator kept = *option.get_validator(kWords);
-        std::istringstream text(kept.active().get_description());
-        for (std::string word; text >> word;) words.push_back(word);
-    } catch (const CLI::OptionNotFound&) {  // none were named
-    }
+    std::istringstream text(note_of(option, kWords));
+    for (std::string word; text >> word;) words.push_back(word);
     return words;
 }
 

@@ -80,6 +80,10 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
     });
 }
 
+/// Keeps a text with an option, which neither refuses values nor shows in help; empty of what was not kept.
+CLI::Option* keep_note(CLI::Option* option, const char* name, const std::string& text);
+std::string note_of(CLI::Option& option, const char* name);
+
 /// Names words that the value may be, for shells to offer. Help does not show them, and they refuse
 /// nothing. Where help calls the value by its words, as in "ring|bus", they need no naming.
 CLI::Option* offer_words(CLI::Option* option, const std::vector<std::string>& words);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -45,6 +46,26 @@ std::optional<raya_mapping> mapping_of(const Json& report) {
                         static_cast<std::uint32_t>(machine.at("pes").whole(UINT32_MAX)));
 }
 
+// A page is sent to others: the files that a run names appear without their folders.
+Json without_folders(Json report) {
+    const auto shorten = [](Json& object, const char* key) {
+        const Json* const path = object.find(key);
+        if (path != nullptr && path->is_text()) object[key] = std::filesystem::path(path->text()).filename().string();
+    };
+    const Json *const scene = report.find("scene"), *const warnings = report.find("warnings");
+    if (scene != nullptr && scene->is_text() && warnings != nullptr) {
+        const std::string file = scene->text();
+        Json shorter = Json::list();
+        for (const std::string& text : warnings->texts())
+            shorter.push_back(text.starts_with(file + ':') ? text.substr(file.rfind('/') + 1) : text);
+        report["warnings"] = shorter;
+    }
+    shorten(report, "scene");
+    for (const auto& [part, key] : {std::pair{"image", "file"}, {"device", "tuned"}, {"compared", "baseline"}})
+        if (report.find(part) != nullptr) shorten(report[part], key);
+    return report;
+}
+
 std::string page_of(const Json& report) {
     const Json* const kind = report.find("kind");
     const std::string name = kind != nullptr && kind->is_text() ? kind->text() : "";
@@ -61,10 +82,7 @@ JsonSource source_of(const std::string& name) {
 }
 
 void make_page(const PageCommand& command) {
-    check_page_target("-o", command.page);
-    std::error_code error;
-    if (std::filesystem::equivalent(command.report, command.page, error))
-        throw UserError(fmt::format("-o {}: that is the report; name another file", command.page));
+    check_page_name("-o", command.page);
     const std::string name = input_name(command.report);
     const std::string page = page_of_report(json_text(command.report, source_of(name), Pipes::kRead), name);
     write_whole_file(command.page, page);
@@ -75,15 +93,15 @@ void make_page(const PageCommand& command) {
 
 }  // namespace
 
-void check_page_target(const std::string& option, const std::string& file) {
+void check_page_name(const std::string& option, const std::string& file) {
     if (!file.ends_with(".html") && !file.ends_with(".htm") && !file.starts_with("/dev/") && !is_standard_stream(file))
         throw UserError(
             fmt::format("{} {}: what is written is a page for a browser; let the name end in .html", option, file));
-    check_writable(file);
 }
 
 std::string page_of_report(const std::string& report, const std::string& name) {
-    const std::string page = read_json(report, source_of(name), page_of);
+    const auto page_from = [](const Json& json) { return page_of(without_folders(json)); };
+    const std::string page = read_json(report, source_of(name), page_from);
     if (page.size() <= kLargestPage) return page;
     throw UserError(fmt::format("{}: its page would have {} bytes, {} at most so that it can be sent", name,
                                 page.size(), kLargestPage));
@@ -106,13 +124,12 @@ void add_page_command(CLI::App& program) {
                    "What was checked on this device, to be sent to somebody"}});
     const auto options = std::make_shared<PageCommand>();
     const OptionGroup group(*command, kFiles);
-    add_value(*command, "REPORT", options->report, "Report of raya render, bench or verify, as --report writes it")
-        ->required()
-        ->type_name("REPORT.json");
-    add_value(*command, "-o,--output", options->page,
-              "Page to write: one file for a browser, below 1 MB, that needs no network")
-        ->required()
-        ->type_name("FILE.html");
+    add_file(*command, FileUse::kRead, "REPORT", options->report, "REPORT.json",
+             "Report of raya render, bench or verify, as --report writes it")
+        ->required();
+    add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
+             "Page to write: one file for a browser, below 1 MB, that needs no network")
+        ->required();
     command->callback([options] { make_page(*options); });
 }
 

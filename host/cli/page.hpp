@@ -4,9 +4,8 @@
 
 namespace raya {
 
-/// Refuses a page whose name does not end in .html or .htm, or that could not be written. `option`: as it was given.
-/// UserError.
-void check_page_target(const std::string& option, const std::string& file);
+/// Refuses a page whose name does not end in .html or .htm. `option`: as it was given. UserError.
+void check_page_name(const std::string& option, const std::string& file);
 
 /// The page of a report of render, bench or verify, which tells what stands in it and nothing else. `name`: of the
 /// report's file, for messages. UserError for what is no such report, or lacks what a page needs.

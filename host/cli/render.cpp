@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -17,7 +18,7 @@ void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) 
         check_trace(parsed, command.trace);
         check_keep(parsed, command.keep);
         if (command.frames.given()) check_frames(command);
-        check_targets(command);
+        check_targets(parsed, command);
     }
     RenderRun run(command, ranks);
     if (command.frames.given()) return render_frames(parsed, command, run);
@@ -39,34 +40,30 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
                              "A small picture on a torus of 64 nodes, and all that was counted as JSON"}});
     const auto options = std::make_shared<RenderCommand>();
     OptionGroup group(*command, kFiles);
-    add_value(*command, "SCENE", options->render.scene, "Scene in NFF, as the SPD programs write it; -: stdin")
-        ->required()
-        ->type_name("SCENE.nff");
-    add_value(
-        *command, "-o,--output", options->image,
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
+             "Scene in NFF, as the SPD programs write it; -: stdin")
+        ->required();
+    add_file(
+        *command, FileUse::kWritten, "-o,--output", options->image, "IMAGE",
         "Image to write: .png, .tif, .ppm or .jpg (8-bit codes; JPEG of quality 95, lossy), .exr or .pfm (linear); "
         "-: stdout, as PPM. What goes to stdout, of this or another file, leaves the summary to stderr")
-        ->required()
-        ->type_name("IMAGE");
+        ->required();
     add_render_options(*command, options->render);
     add_tone_options(*command, options->tone);
     add_frame_options(*command, options->frames);
     add_keep_options(*command, options->keep);
     add_torus_options(*command, options->torus);
     group.next(kCloserLook);
-    add_value(*command, "--cost", options->cost,
-              "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM")
-        ->type_name("FILE.exr");
-    add_value(*command, "--mask", options->mask, "Write which pixels were supersampled, white on black")
-        ->type_name("IMAGE");
-    add_value(*command, "--report", options->report, "Write everything that was counted and measured; -: stdout")
-        ->type_name("FILE.json");
-    add_value(
-        *command, "--page", options->page,
-        "Write the render as a page for a browser: picture, owners of pixels, loads, times by label, roofline, "
-        "model beside measurement, build options; it is what raya page makes of the report. Measures the device's "
-        "peak, as --profile does")
-        ->type_name("FILE.html");
+    add_file(*command, FileUse::kWritten, "--cost", options->cost, "FILE.exr",
+             "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM");
+    add_file(*command, FileUse::kWritten, "--mask", options->mask, "IMAGE",
+             "Write which pixels were supersampled, white on black");
+    add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
+             "Write everything that was counted and measured; -: stdout");
+    add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
+             "Write the render as a page for a browser: picture, owners of pixels, loads, times by label, roofline, "
+             "model beside measurement, build options; it is what raya page makes of the report. Measures the device's "
+             "peak, as --profile does");
     command->add_flag("--profile", options->profile,
                       "Print launches and times of every labelled command, the builds, and how near each kernel came "
                       "to the device's measured peak (the roofline)");

@@ -2,10 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <filesystem>
-#include <set>
-
-#include "host/cl/device.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
@@ -20,60 +17,37 @@
 namespace raya {
 namespace {
 
-// A file that is named twice would be written over by the other one, or over the scene.
-void check_distinct(const std::string& scene, const std::vector<std::string>& outputs) {
-    std::error_code error;
-    std::set<std::filesystem::path> seen;
-    if (!is_standard_stream(scene)) seen.insert(std::filesystem::canonical(scene, error));
-    for (const std::string& file : outputs) {
-        if (file.empty() || file.starts_with("/dev/") || seen.insert(written_file(file)).second) continue;
-        if (is_standard_stream(file))
-            throw UserError("- is given twice: only one file can go to stdout; name files for the others");
-        throw UserError(
-            fmt::format("{}: named twice; scene, image, cost image, mask, report, page, packets, trace and state must "
-                        "be different files",
-                        file));
-    }
-}
-
 void check_packets(const std::string& file) {
     if (!file.ends_with(".gz") && !file.starts_with("/dev/") && !is_standard_stream(file))
         throw UserError(
             fmt::format("--packets {}: what is written is compressed with gzip; let the name end in .csv.gz", file));
-    check_writable(file);
 }
 
-void check_replay(const TorusOptions& t) {
+void check_replay(const CLI::App& parsed, const TorusOptions& t) {
     if (t.replay != "simgrid") throw UserError(fmt::format("--replay {}: must be simgrid", t.replay));
     if (!t.packets.ends_with(".csv.gz"))
         throw UserError(
             "--replay simgrid writes FILE.xml and FILE.replay beside the packets: give --packets FILE.csv.gz");
     const ReplayFiles files(t.packets);
-    check_writable(files.platform);
-    check_writable(files.replay);
+    check_files(parsed, {{"--replay", files.platform}, {"--replay", files.replay}});
 }
 
 }  // namespace
 
-void check_targets(const RenderCommand& command) {
+void check_targets(const CLI::App& parsed, const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
     if (!launched())  // where mpirun may have put a terminal between itself and us
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
     tone_of(command.tone, command.image);
     if (!packets.empty()) check_packets(packets);
-    if (!command.torus.replay.empty()) check_replay(command.torus);
-    check_distinct(command.render.scene, {command.image, command.cost, command.mask, command.report, command.page,
-                                          packets, command.trace.file, command.keep.file});
-    if (!command.page.empty()) check_page_target("--page", command.page);
-    // Drivers first: the first TBB that is loaded serves all, and Intel's runtime wants a newer one than OpenImageIO's.
-    all_devices();
-    check_writable_target(command.image, kImageExtensions);
-    if (!command.cost.empty()) check_writable_target(command.cost, kGreyImageExtensions);
-    if (!command.mask.empty()) check_writable_target(command.mask, kImageExtensions);
+    if (!command.torus.replay.empty()) check_replay(parsed, command.torus);
+    if (!command.page.empty()) check_page_name("--page", command.page);
+    check_image_name(command.image, kImageExtensions);
+    if (!command.cost.empty()) check_image_name(command.cost, kGreyImageExtensions);
+    if (!command.mask.empty()) check_image_name(command.mask, kImageExtensions);
     if (!command.mask.empty() && command.render.antialias != "supersample")
         throw UserError("--mask shows which pixels were supersampled: give --antialias supersample as well");
-    if (!command.report.empty()) check_writable(command.report);
 }
 
 SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks) {

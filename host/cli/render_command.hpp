@@ -31,6 +31,11 @@ struct RenderCommand {
     TraceOptions trace;
     bool profile = false, summary = true;
 
+    /// Options whose files are numbered where there are frames, with their values; empty: not given.
+    std::vector<std::pair<const char*, std::string>> files() const {
+        return {{"--output", image}, {"--cost", cost}, {"--mask", mask}, {"--report", report}};
+    }
+
     /// Commands are timed where somebody will read the times: a GPU's queue is faster without.
     Timing timing() const {
         return profile || reports() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn : Timing::kOff;
@@ -60,8 +65,8 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
 /// object; `options` name what rank 0 would choose from what it has read.
 SceneInput read_scene_once(RenderWatch& watch, RenderOptions& options, Ranks& ranks);
 
-/// Refuses files that could not be written, or that are named twice. UserError.
-void check_targets(const RenderCommand& command);
+/// Refuses names of files that the command cannot write, and what follows from them. UserError.
+void check_targets(const CLI::App& parsed, const RenderCommand& command);
 
 /// How the picture's codes are made; empty of a picture without.
 std::optional<ImageCodes> codes_of(const RenderCommand& command);

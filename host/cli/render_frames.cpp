@@ -4,15 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <set>
 
+#include "host/cl/program.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/error.hpp"
 #include "host/files/bytes_hash.hpp"
 #include "host/files/say.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/machine/unit_text.hpp"
 #include "host/scene/nff_writer.hpp"
 
@@ -28,9 +28,18 @@ RenderCommand command_of(const RenderCommand& all, std::uint32_t frame) {
 }
 
 std::vector<std::string> files_of(const RenderCommand& one) {
-    std::vector<std::string> files = {one.image, one.cost, one.mask, one.report};
-    std::erase(files, std::string());
+    std::vector<std::string> files;
+    for (const auto& [option, file] : one.files())
+        if (!file.empty()) files.push_back(file);
     return files;
+}
+
+void check_files_of(const CLI::App& parsed, const RenderCommand& command, const std::vector<Frame>& frames) {
+    std::vector<NamedFile> outputs = {{"--frames", frame_record_file(command.image)}};
+    for (const Frame& frame : frames)
+        for (const auto& [option, file] : command.files())
+            if (!file.empty()) outputs.push_back({option, numbered(file, frame.number)});
+    check_files(parsed, outputs);
 }
 
 // All that a frame follows from beside its camera: the scene and its lights, what was asked for, the program.
@@ -41,11 +50,9 @@ std::string settings_of(const CLI::App& parsed, const Scene& scene) {
     for (const CLI::Option* option : parsed.get_options())
         if (option->count() > 0 && !neutral.contains(option->get_name()))
             text += fmt::format("\n{} {}", option->get_name(), fmt::join(option->results(), " "));
-    const char* const build = std::getenv("RAYA_BUILD_OPTIONS");
     Scene objects = scene;
     objects.view = {};
-    return fmt::format("{}\n{}\n{}\n{}", text, build != nullptr ? build : "", scene.name,
-                       bytes_hash(write_nff(objects)));
+    return fmt::format("{}\n{}\n{}\n{}", text, user_build_options(), scene.name, bytes_hash(write_nff(objects)));
 }
 
 std::string settings_hash(const std::string& settings, const Scene& scene) {
@@ -88,8 +95,12 @@ void tell(const Sums& sums, const std::string& record) {
 }  // namespace
 
 void check_frames(const RenderCommand& command) {
-    if (is_standard_stream(command.image))
-        throw UserError("-o -: frames are many files, which stdout cannot hold; name one, which gets their numbers");
+    for (const auto& [option, file] : command.files())
+        if (is_standard_stream(file))
+            throw UserError(
+                fmt::format("{} -: frames are many files, which stdout cannot hold; name one, which gets "
+                            "their numbers",
+                            option));
     const std::pair<const char*, bool> of_one_image[] = {{"--page", !command.page.empty()},
                                                          {"--trace", !command.trace.file.empty()},
                                                          {"--profile", command.profile},
@@ -101,7 +112,6 @@ void check_frames(const RenderCommand& command) {
             throw UserError(fmt::format(
                 "{} is of one image: render that frame by itself, from where its report's view says (--report)",
                 option));
-    check_writable(frame_record_file(command.image));
 }
 
 void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run) {
@@ -111,7 +121,7 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
     std::string settings;
     if (ranks.first()) {
         frames = frames_of(command.frames, run.input.scene.view);
-        for (const Frame& frame : {frames.front(), frames.back()}) check_targets(command_of(command, frame.number));
+        check_files_of(parsed, command, frames);
         record.emplace(frame_record_file(command.image));
         settings = settings_of(parsed, run.input.scene);
     }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "host/accel/tree_words.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"
@@ -124,8 +125,8 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
         "a CPU, 128 elsewhere")
         ->type_name("L");
     add_tuned_option(command, o.no_tuned);
-    add_value(command, "--kernel-dir", o.kernel_dir, "Read the kernels from this folder, while developing them")
-        ->type_name("DIR");
+    add_file(command, FileUse::kKernelFolder, "--kernel-dir", o.kernel_dir, "DIR",
+             "Read the kernels from this folder, while developing them");
     offer_render_words(command);
 }
 

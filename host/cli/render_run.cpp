@@ -40,15 +40,22 @@ RenderRun::RenderRun(const RenderCommand& command, Ranks& of)
       options(command.render),
       input(read_scene_once(watch, options, of)),
       timing_(command.timing()),
-      many_(command.frames.given()) {}
+      many_(command.frames.given()),
+      pictures_{command.image, command.cost, command.mask} {}
 
 Session& RenderRun::session() {
     if (session_) return *session_;
     tuned_.reset(new TunedUse(use_tuned(options.no_tuned, &input.warnings)));
+    if (ranks.first()) warn_of_build_options(input.warnings);
     progress.stage("preparing");
     device_ = watch.steps().during("choose device", [&] { return choose_device(options.device, ranks.on_host()); });
+    // After the drivers: the first TBB that is loaded serves all, and Intel's runtime wants a newer one than
+    // OpenImageIO's.
+    for (const std::string& picture : pictures_)
+        if (ranks.first() && !picture.empty()) load_encoder(picture);
     session_.emplace(watch.steps().during("open device", [&] { return Session(device_, timing_); }));
     if (many_) session_->keep_programs();
+    if (ranks.first()) session_->announce_compiling();
     watch.observe(*session_, ranks);
     return *session_;
 }

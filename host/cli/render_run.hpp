@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/cl/commands.hpp"
 #include "host/cli/render_options.hpp"
@@ -44,8 +45,8 @@ class RenderRun {
     /// Reads the scene: rank 0 does. UserError.
     RenderRun(const RenderCommand& command, Ranks& ranks);
 
-    /// The device, opened at the first call with all that renders take from it. Of several images the programs are
-    /// built once.
+    /// The device, opened at the first call with all that renders take from it, and what encodes the pictures. Of
+    /// several images the programs are built once.
     Session& session();
     const cl::Device& device() const { return device_; }  // of the session, once it is open
 
@@ -58,6 +59,7 @@ class RenderRun {
   private:
     Timing timing_;
     bool many_;
+    std::vector<std::string> pictures_;
     std::unique_ptr<TunedUse> tuned_;
     cl::Device device_;
     std::optional<Session> session_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "host/cl/clock_anchor.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/files/standard_streams.hpp"
@@ -23,10 +24,9 @@ constexpr std::string_view kBuild = "build ";
 
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
     const OptionGroup group(command, kCloserLook);
-    add_value(command, "--trace", trace.file,
-              "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
-              "machine in modelled time; -: stdout")
-        ->type_name("FILE.json[.gz]");
+    add_file(command, FileUse::kWritten, "--trace", trace.file, "FILE.json[.gz]",
+             "Write a trace that ui.perfetto.dev opens: the host's steps, the device's commands, and the modelled "
+             "machine in modelled time; -: stdout");
     add_value(command, "--trace-events", trace.events,
               "Events in the trace at most, 1 or more; how many were left out is said at the end")
         ->type_name("N")
@@ -50,7 +50,6 @@ void check_trace(const CLI::App& command, const TraceOptions& trace) {
     if (!named && !trace.file.starts_with("/dev/") && !is_standard_stream(trace.file))
         throw UserError(
             fmt::format("--trace {}: let the name end in .json, or in .json.gz to be compressed", trace.file));
-    check_writable(trace.file);
 }
 
 RenderWatch::RenderWatch(const TraceOptions& trace, bool profile) : trace_(trace), profile_(profile) {}

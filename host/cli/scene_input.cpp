@@ -3,7 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
+#include <sstream>
 
+#include "host/cl/program.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/files/standard_streams.hpp"
@@ -42,6 +45,21 @@ SceneInput read_scene(const std::string& file, bool strict) {
          fmt::format("{}: {}, {}, {} x {} pixels", input_name(file), counted(input.scene.object_count(), "object"),
                      counted(input.scene.lights.size(), "light"), input.scene.view.width, input.scene.view.height));
     return input;
+}
+
+void warn_of_build_options(Warnings& warnings) {
+    static const std::set<std::string> harmless = {"-cl-opt-disable",
+                                                   "-cl-fp32-correctly-rounded-divide-sqrt",
+                                                   "-cl-kernel-arg-info",
+                                                   "-cl-uniform-work-group-size",
+                                                   "-cl-nv-verbose",
+                                                   "-g",
+                                                   "-w",
+                                                   "-Werror"};
+    std::istringstream words(user_build_options());
+    for (std::string word; words >> word;)
+        if (!harmless.contains(word))
+            warnings.add(fmt::format("RAYA_BUILD_OPTIONS: {} may change pixels and counts", word));
 }
 
 void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings) {

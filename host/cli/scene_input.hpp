@@ -36,6 +36,9 @@ struct SceneInput {
 /// The scene of a file, or of stdin ("-"). Warns of what is passed over. UserError as read_nff().
 SceneInput read_scene(const std::string& file, bool strict);
 
+/// Warns of options in RAYA_BUILD_OPTIONS that may change results.
+void warn_of_build_options(Warnings& warnings);
+
 /// Warns where so many objects are tested with every ray that it is hardly meant.
 void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings);
 

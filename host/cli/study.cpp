@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -110,13 +111,11 @@ void add_formats_study(CLI::App& study) {
     add_study_examples(*command);
     const auto options = std::make_shared<FormatsCommand>();
     OptionGroup group(*command, kFiles);
-    add_value(*command, "-o,--output", options->folder,
-              "Folder for formats.csv, formats.json and formats.md; made if missing")
-        ->required()
-        ->type_name("DIR");
-    add_value(*command, "SCENE", options->scenes,
-              "Scenes in NFF, one of them - for stdin; default: the project's centre, spheres, glass, polygons, cones")
-        ->type_name("SCENE.nff");
+    add_file(*command, FileUse::kWrittenFolder, "-o,--output", options->folder, "DIR",
+             "Folder for formats.csv, formats.json and formats.md; made if missing")
+        ->required();
+    add_file(*command, FileUse::kRead, "SCENE", options->scenes, "SCENE.nff",
+             "Scenes in NFF, one of them - for stdin; default: the project's centre, spheres, glass, polygons, cones");
     group.next("What is measured");
     add_value(*command, "--format", options->formats,
               "Formats beside fp32, with commas between: spa22 (e6m15) or eXmY[t]: X = 5..8, Y = 4..21, t "

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/quoted.hpp"
@@ -161,17 +162,15 @@ void add_study(CLI::App& parent, const std::string& name, const std::string& sum
     add_study_examples(*command);
     const auto options = std::make_shared<LaboratoryCommand>();
     OptionGroup group(*command, kFiles);
-    add_value(*command, "-o,--output", options->folder,
-              "Folder for index.html, to be read; Markdown, CSV, JSON and plots beside it; made if missing")
-        ->required()
-        ->type_name("DIR");
-    add_value(
-        *command, "SCENE", options->scenes,
+    add_file(*command, FileUse::kWrittenFolder, "-o,--output", options->folder, "DIR",
+             "Folder for index.html, to be read; Markdown, CSV, JSON and plots beside it; made if missing")
+        ->required();
+    add_file(
+        *command, FileUse::kRead, "SCENE", options->scenes, "SCENE.nff",
         wanted.size() > 1
             ? "Scenes in NFF, one of them - for stdin; studies of one scene take the first; default: each study's own"
         : wanted.front().one_scene ? "Scene in NFF; -: stdin; default: centre, the paper's kind"
-                                   : "Scenes in NFF, one of them - for stdin; default: the study's own")
-        ->type_name("SCENE.nff");
+                                   : "Scenes in NFF, one of them - for stdin; default: the study's own");
     group.next(kPicture);
     add_value(*command, "--size", options->size,
               "Image size in pixels a side, 17..4096; default: the study's, mostly 256")

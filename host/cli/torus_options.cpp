@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
@@ -60,10 +61,10 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "measured when the render begins",
         "auto|copies|kernel")
         ->default_str("auto");
-    add("--packets", t.packets,
+    add_file(
+        command, FileUse::kWritten, "--packets", t.packets, "FILE.csv.gz",
         "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), compressed; -: "
-        "stdout; see docs/packets.md",
-        "FILE.csv.gz");
+        "stdout; see docs/packets.md");
     offer_words(
         add("--replay", t.replay,
             "Beside the packets, write the render's history for SimGrid: FILE.xml, the platform, and FILE.replay, for "

@@ -7,10 +7,12 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 #include "host/files/say.hpp"
@@ -119,10 +121,9 @@ void print_overall(const std::vector<DeviceChecks>& all) {
 
 void run_verify(const VerifyCommand& command) {
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
-    if (!command.report.empty()) check_writable(command.report);
-    if (!command.page.empty()) check_page_target("--page", command.page);
-    if (!command.page.empty() && command.page == command.report)
-        throw UserError(fmt::format("{}: named by --report and --page: name another file", command.page));
+    if (!command.page.empty()) check_page_name("--page", command.page);
+    Warnings warnings;
+    if (command.lines < 0) warn_of_build_options(warnings);
     const VerifySettings settings{.depth = command.depth(),
                                   .sources = {command.kernel_dir},
                                   .only = command.only,
@@ -173,16 +174,14 @@ void add_verify_command(CLI::App& program) {
         ->description(command->get_option("--device")->get_description() +
                       "; all: every usable device, one after another");
     group.next(kKernels);
-    add_value(*command, "--kernel-dir", options->kernel_dir, "Read the kernels from this folder, while developing them")
-        ->type_name("DIR");
+    add_file(*command, FileUse::kKernelFolder, "--kernel-dir", options->kernel_dir, "DIR",
+             "Read the kernels from this folder, while developing them");
     group.next(kCloserLook);
-    add_value(*command, "--report", options->report,
-              "Write every check, with what is wrong, as JSON; -: stdout, and the lines on stderr")
-        ->type_name("FILE.json");
-    add_value(*command, "--page", options->page,
-              "Write every check, and the first that failed in full, as a page for a browser; it is what raya page "
-              "makes of the report")
-        ->type_name("FILE.html");
+    add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
+             "Write every check, with what is wrong, as JSON; -: stdout, and the lines on stderr");
+    add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
+             "Write every check, and the first that failed in full, as a page for a browser; it is what raya page "
+             "makes of the report");
     // For the process that runs the checks. No group: not in the help.
     add_value(*command, "--lines", options->lines)->group("");
     add_value(*command, "--worker-device", options->worker_device)->group("");

@@ -2,9 +2,9 @@
 
 #include <dlfcn.h>
 #include <fmt/core.h>
-#include <sys/resource.h>
 #include <grp.h>
 #include <pwd.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/xattr.h>
 #include <unistd.h>

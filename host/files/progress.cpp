@@ -22,6 +22,24 @@ std::string progress_line(const std::string& what, const std::optional<Done>& do
                        left > 0 ? fmt::format("{:.0f} s left", left) : fmt::format("{:.0f} s so far", seconds));
 }
 
+std::jthread announce_compiling(const std::string& device) {
+    if (is_quiet()) return {};
+    return std::jthread([device](const std::stop_token& end) {
+        using namespace std::chrono;
+        std::mutex mutex;
+        std::condition_variable_any ended;
+        std::unique_lock lock(mutex);
+        const auto began = steady_clock::now();
+        const auto never = [] { return false; };
+        ended.wait_for(lock, end, 1s, never);
+        if (end.stop_requested()) return;
+        say(fmt::format("raya: compiling kernels for {} (first run only) ...\n", device));
+        ended.wait(lock, end, never);
+        say(fmt::format("raya: compiling kernels took {:.1f} s\n",
+                        duration<double>(steady_clock::now() - began).count()));
+    });
+}
+
 ProgressBar::ProgressBar(bool wanted, const std::string& what) : what_(what) {
     if (wanted && shows_progress()) drawer_ = std::thread([this] { draw_until_ended(); });
 }

@@ -21,6 +21,10 @@ struct Done {
 /// What is drawn of `what` that began `seconds` ago, of which something is done where that is known.
 std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds);
 
+/// Says on stderr, unless --quiet is given, that kernels are compiled for the device once this has lasted longer than
+/// to load compiled ones takes, and at the end, when what is returned goes out of scope, for how long it lasted.
+[[nodiscard]] std::jthread announce_compiling(const std::string& device);
+
 /// Draws on stderr, only if that is a terminal: within a second, five times a second, whatever the command is about.
 /// What runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of
 /// scope; who prints before that clears it (say.hpp).

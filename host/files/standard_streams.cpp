@@ -56,7 +56,7 @@ int take_stdout() {
 }
 
 void refuse_bytes_on_terminal(const std::filesystem::path& path) {
-    if (!is_standard_stream(path) || stdout_is_for_file() || ::isatty(STDOUT_FILENO) == 0) return;
+    if (!is_standard_stream(path) || ::isatty(stdout_is_for_file() ? kept_stdout : STDOUT_FILENO) == 0) return;
     throw UserError(
         "-: stdout is a terminal, and what would be written there is no text; send it into a file or a program (raya "
         "... | program)");

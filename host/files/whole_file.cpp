@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -161,7 +162,14 @@ void check_writable(const fs::path& path) {
     if (is_standard_stream(path)) keep_stdout_for_file();
 }
 
-fs::path written_file(const fs::path& path) { return checked_target(path).file; }
+std::string file_identity(const fs::path& path) {
+    struct stat status {};
+    const auto inode = [&] { return fmt::format("{}:{}", status.st_dev, status.st_ino); };
+    if (::stat(path.c_str(), &status) == 0) return S_ISREG(status.st_mode) ? inode() : "";
+    const fs::path file = followed(path);
+    if (::stat(folder_of(file).c_str(), &status) == 0) return inode() + '/' + file.filename().string();
+    return fs::absolute(file).lexically_normal().string();
+}
 
 void write_whole_file(const fs::path& path, std::string_view bytes) {
     write_whole_file(path, [left = bytes]() mutable { return std::exchange(left, {}); });

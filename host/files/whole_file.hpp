@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace raya {
@@ -12,10 +13,9 @@ namespace raya {
 /// now on (standard_streams.hpp).
 void check_writable(const std::filesystem::path& path);
 
-/// The file that write_whole_file() would write for `path`: symbolic links followed, whether what they name is there or
-/// not, and the folder's own name in place of whatever leads to it. Two paths with the same one name the same file.
-/// Throws UserError as check_writable().
-std::filesystem::path written_file(const std::filesystem::path& path);
+/// The same text for all names of a file, whether it exists or not: device and inode, or those of the folder that it
+/// would be made in. Empty for what is not a regular file: a device, a pipe, a folder. UserError for a loop of links.
+std::string file_identity(const std::filesystem::path& path);
 
 /// Writes `bytes` to `path`: to a temporary name in the same folder, then renamed, so that nobody ever sees half a file
 /// and an old file stays as it was until the new one is complete. A symbolic link is followed, to a file that

@@ -45,13 +45,6 @@ const char* encoded_format(const std::string& extension) {
     return nullptr;
 }
 
-void check_extension(const fs::path& path, std::span<const std::string_view> extensions) {
-    const std::string extension = lower_case_extension(path, extensions);
-    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
-    throw UserError(fmt::format("cannot write '{}': its extension names no image format; use one of {}", path.string(),
-                                fmt::join(extensions, ", ")));
-}
-
 void check_shape(int width, int height, std::size_t channels, std::size_t floats) {
     const bool positive = width > 0 && height > 0;
     if (!positive || floats != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels)
@@ -119,22 +112,27 @@ bool holds_codes(const fs::path& path) {
     return extension != ".exr" && extension != ".pfm";
 }
 
-void check_writable_target(const fs::path& path, std::span<const std::string_view> extensions) {
-    check_extension(path, extensions);
-    check_writable(path);
-    if (encoded_format(lower_case_extension(path, extensions)) != nullptr) encoder(path);
+void check_image_name(const fs::path& path, std::span<const std::string_view> extensions) {
+    const std::string extension = lower_case_extension(path, extensions);
+    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
+    throw UserError(fmt::format("cannot write '{}': its extension names no image format; use one of {}", path.string(),
+                                fmt::join(extensions, ", ")));
+}
+
+void load_encoder(const fs::path& path) {
+    if (encoded_format(lower_case_extension(path, kImageExtensions)) != nullptr) encoder(path);
 }
 
 void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes, const Tone& tone) {
     check_shape(image.width, image.height, 3, image.rgb.size());
-    check_extension(path, kImageExtensions);
+    check_image_name(path, kImageExtensions);
     write_pixels(path, {image.width, image.height, 3, image.rgb}, attributes,
                  lower_case_extension(path, kImageExtensions), tone);
 }
 
 void write_image(const fs::path& path, const GreyImage& image, const ImageAttributes& attributes) {
     check_shape(image.width, image.height, 1, image.values.size());
-    check_extension(path, kGreyImageExtensions);
+    check_image_name(path, kGreyImageExtensions);
     write_pixels(path, {image.width, image.height, 1, image.values}, attributes,
                  lower_case_extension(path, kGreyImageExtensions), {});
 }

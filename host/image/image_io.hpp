@@ -19,10 +19,13 @@ inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".
 /// Whether a colour picture is written there as 8-bit codes, and so by a tone.
 bool holds_codes(const std::filesystem::path& path);
 
-/// Refuses a target whose extension (in either case) is not among `extensions`, whose format cannot be encoded here, or
-/// that write_whole_file() could not write, so that a command can do so before it renders. Stdout ("-") takes PPM,
-/// where `extensions` have it, else PFM. Throws UserError with file, reason and remedy.
-void check_writable_target(const std::filesystem::path& path, std::span<const std::string_view> extensions);
+/// Refuses a name whose extension (in either case) is not among `extensions`. Stdout ("-") takes PPM, where
+/// `extensions` have it, else PFM. Throws UserError with file, reason and remedy.
+void check_image_name(const std::filesystem::path& path, std::span<const std::string_view> extensions);
+
+/// Loads the library that encodes the format of that name, if it needs one, so that a command refuses before it renders
+/// what cannot be encoded. Throws UserError with file, reason and remedy.
+void load_encoder(const std::filesystem::path& path);
 
 /// Writes the picture in the format that the extension names, whole or not at all, without date, host or program
 /// version. PNG, TIFF (zip), JPEG (kJpegQuality, colours as fine as brightness) and PPM hold the nearest 8-bit code of

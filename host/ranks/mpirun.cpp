@@ -87,7 +87,8 @@ std::string telling_line(const std::string& said) {
     const std::string own = "raya: ";
     std::istringstream lines(said);
     for (std::string line; std::getline(lines, line);)
-        if (line.starts_with(own)) return line.substr(own.size());
+        if (line.starts_with(own) && !line.starts_with(own + "warning: ") && !line.starts_with(own + "compiling "))
+            return line.substr(own.size());
     return last_line(said);
 }
 

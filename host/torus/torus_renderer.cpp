@@ -123,6 +123,7 @@ QueueTrial TorusRenderer::queue_trial() {
 
 void TorusRenderer::Parts::build() {
     const StepLog::Step step = session.step("set up device");
+    const std::jthread notice = session.compiling();
     const Clock::time_point start = Clock::now();
     nodes = std::make_unique<NodeArray>(session, settings, job.memories, job.buffers, options, share, ranks);
     KernelOptions one_lane = options;

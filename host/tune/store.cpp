@@ -1,6 +1,7 @@
 #include "host/tune/store.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 
 #include "host/error.hpp"
 #include "host/files/json.hpp"
+#include "host/files/module.hpp"
 #include "host/files/read_file.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/tune/values_json.hpp"
@@ -81,6 +83,9 @@ constexpr std::uint64_t kMostBytes = 1 << 20;
 std::optional<TunedFile> read_kept(const fs::path& path, const DeviceInfo& device) {
     std::error_code none;
     if (!fs::exists(path, none)) return {};
+    if (const std::string why = other_writers(fs::canonical(path, none), {::geteuid()}, Sticky::kRefused, path);
+        !why.empty())
+        throw UserError(why);
     return read_tuned(json_text(path, {path}, Pipes::kRefused, kMostBytes), path, device);
 }
 
@@ -155,9 +160,12 @@ void keep_tuned(const DeviceInfo& device, const TunedFile& now) {
 }
 
 TunedSource kept_choices(std::function<void(const std::string&)> warn) {
-    const char* wanted = std::getenv("RAYA_TUNED");
+    const char* const set = std::getenv("RAYA_TUNED");
+    const std::string wanted = set != nullptr ? set : "";
+    if (!wanted.empty() && wanted != "off")
+        throw UserError(fmt::format("RAYA_TUNED={}: must be off, or not set", wanted));
     const auto folder = tuned_folder();
-    if (!folder || (wanted != nullptr && std::string(wanted) == "off")) return {};
+    if (!folder || wanted == "off") return {};
     return [folder = *folder, warn = std::move(warn), read = std::map<std::string, std::optional<TunedFile>>()](
                const DeviceInfo& device, const TunedFor& what) mutable -> std::optional<TunedChoice> {
         const fs::path path = folder / tuned_file_name(device);

@@ -45,7 +45,8 @@ std::filesystem::path tuned_place(const DeviceInfo& device);
 void keep_tuned(const DeviceInfo& device, const TunedFile& now);
 
 /// What is kept, for TunedUse: a device's file is read when it is first asked for. One that cannot be used is told to
-/// `warn`, once, and ignored. Knows nothing where the environment variable RAYA_TUNED is "off".
+/// `warn`, once, and ignored, like one that other users may write. Knows nothing where the environment variable
+/// RAYA_TUNED is "off". UserError where it is anything else.
 TunedSource kept_choices(std::function<void(const std::string&)> warn);
 
 }  // namespace raya

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <sstream>
 
+#include "host/cl/program.hpp"
 #include "host/error.hpp"
 #include "host/files/json.hpp"
 
@@ -115,8 +115,7 @@ Json to_json(const Check& c) {
 
 std::vector<std::string> compiler_remedies() {
     std::vector<std::string> all;
-    const char* given = std::getenv("RAYA_BUILD_OPTIONS");
-    if (given == nullptr || std::string(given).find("-cl-opt-disable") == std::string::npos)
+    if (user_build_options().find("-cl-opt-disable") == std::string::npos)
         all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: the compiler without its optimiser");
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
     return all;

@@ -36,6 +36,8 @@ struct RunOutcome {
     int code = 0;               // exit code; 128 + signal if one ended the program
     double after_signal_s = 0;  // from the signal to the end
     std::string out, err;
+    /// stderr without the lines about compiling, which depend on the cache and on how busy the machine is.
+    std::string messages() const { return std::regex_replace(err, std::regex("raya: compiling kernels [^\n]*\n"), ""); }
     std::string told() const { return command + "\nexit code " + std::to_string(code) + "\n" + out + "\n" + err; }
 };
 
@@ -47,8 +49,8 @@ struct Surroundings {
     rlim_t memory = 0;         // bytes of address space that it may take, 0: any
     std::string error_file{};  // what stderr goes to, so that it is not seen in the outcome; empty: to be seen
     std::string program = RAYA_PROGRAM;
-    int signal = 0;            // sent to the program, unless it has ended before
-    int signal_after_ms = 0;   // after it has begun to handle that signal, and `signal_when` is true
+    int signal = 0;           // sent to the program, unless it has ended before
+    int signal_after_ms = 0;  // after it has begun to handle that signal, and `signal_when` is true
     std::function<bool()> signal_when{};
     int signal_count = 1;    // timeout(1) sends its signal twice
     std::string out_file{};  // what stdout goes to, as `error_file`

@@ -193,8 +193,8 @@ TEST_CASE("a mask that cannot be written is refused before anything is rendered"
     const auto refused = [&](const std::string& mask, const Words& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), supersample({"--mask", mask})), 2, message);
     };
-    for (const char* other : {"x.json", "./x.pfm"}) refused(outputs / other, {other, "named twice"});
-    refused(scene_file("planes"), {"planes.nff", "named twice"});
+    for (const char* other : {"x.json", "./x.pfm"}) refused(outputs / other, {other, "--mask", "the same file as"});
+    refused(scene_file("planes"), {"--mask", "would overwrite the input SCENE", "planes.nff"});
     refused("", {"--mask", "must not be empty"});
     refused(outputs / "mask.gif", {"mask.gif", ".png", ".exr", ".pfm", ".jpg"});
     refused(outputs / "missing/mask.png", {"/missing' does not exist", "mkdir -p"});

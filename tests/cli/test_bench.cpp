@@ -65,7 +65,7 @@ TEST_CASE("bench --report writes its rows, --compare holds a later run against t
     const RunOutcome second = run_raya(small_bench({"--compare", changed(folder, "slow.json", 1e-3)}));
     INFO(second.told());
     CHECK(second.code == 0);
-    CHECK(second.err.empty());
+    CHECK(second.messages().empty());
     CHECK_THAT(second.out,
                Catch::Contains("faster") && Catch::Contains("1 row compared, none slower by more than 10 %"));
     // Against a row a thousand times faster it must be.
@@ -97,7 +97,7 @@ TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cl
                   {"No such file or directory; remedy: make a baseline with: raya bench --report " + missing});
     check_refused(outputs, small_bench({"--compare", folder / "no.json"}), 2, {"no.json:1: not valid JSON (byte 2)"});
     check_refused(outputs, small_bench({"--compare", folder / "no.json", "--report", folder / "no.json"}), 2,
-                  {"named by --report and --compare"});
+                  {"--report", "would overwrite the input --compare"});
     check_refused(outputs, small_bench({"--report", outputs / "none" / "r.json"}), 2, {"does not exist"});
     for (const char* tolerance : {"-1", "101", "nan"})
         check_refused(outputs, small_bench({"--compare", folder / "no.json", "--tolerance", tolerance}), 2,

@@ -17,7 +17,7 @@ RunOutcome succeed(const Words& arguments) {
     RunOutcome run = run_raya(arguments);
     INFO(run.told());
     REQUIRE(run.code == 0);
-    CHECK(run.err.empty());
+    CHECK(run.messages().empty());
     return run;
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("a render ends with a short summary", "[cli]") {
     const Document report = files.report();
     const std::string& out = files.run().out;
     INFO(out);
-    CHECK(files.run().err.empty());
+    CHECK(files.run().messages().empty());
     CHECK(std::count(out.begin(), out.end(), '\n') <= 8);
     for (const char* text : {"20 x 12 pixels on spa (20 PEs, cyclic mapping, offset 16), e6m15, 8 bounces",
                              "240 primary", "u = ", "efficiency", "in each PE of 32 KB", "rays/s on ", "(4 lanes)"})

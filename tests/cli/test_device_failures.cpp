@@ -8,6 +8,7 @@
 
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
 
 namespace raya {
@@ -52,6 +53,69 @@ TEST_CASE("RAYA_BUILD_OPTIONS goes to every build, into the report and into the 
     check_refused(none, render_into(none, scene_file("planes"), {"--size", "16"}), 3,
                   {"building program 'ring/trace.cl'", "-no-such-option"},
                   {.variables = {{"RAYA_BUILD_OPTIONS", "-no-such-option"}}});
+}
+
+TEST_CASE("options in RAYA_BUILD_OPTIONS that may change results are warned of, in the report too", "[cli]") {
+    const auto warnings = [](const std::string& options) {
+        const ScratchFolder outputs;
+        const RunOutcome run = run_raya({"render", scene_file("planes"), "-o", outputs / "x.pfm", "--report",
+                                         outputs / "x.json", "--size", "8", "--pes", "8", "--lanes", "4", "-q"},
+                                        {.variables = {{"RAYA_BUILD_OPTIONS", options}}});
+        INFO(run.told());
+        CHECK(run.code == 0);
+        std::vector<std::string> all = Document::parse(file_contents(outputs / "x.json")).value("warnings", Words());
+        for (const std::string& one : all) CHECK_THAT(run.err, Catch::Contains("raya: warning: " + one));
+        return all;
+    };
+    CHECK(warnings("").empty());
+    CHECK(warnings("-cl-opt-disable -w -cl-fp32-correctly-rounded-divide-sqrt").empty());
+    for (const char* option : {"-cl-fast-relaxed-math", "-cl-unsafe-math-optimizations", "-cl-finite-math-only",
+                               "-cl-mad-enable", "-cl-no-signed-zeros", "-cl-denorms-are-zero", "-DRAYA_OTHER=1"})
+        CHECK(warnings(std::string("-cl-opt-disable ") + option) ==
+              Words{std::string("RAYA_BUILD_OPTIONS: ") + option + " may change pixels and counts"});
+    for (const Words& words :
+         {Words{"bench", "--size", "8", "--pes", "8", "--samples", "1", "--lanes", "4", "--format", "fp32"},
+          Words{"verify", "--only", "machine bus", "--lanes", "4"}}) {
+        const RunOutcome run = run_raya(words, {.variables = {{"RAYA_BUILD_OPTIONS", "-cl-mad-enable"}}});
+        INFO(run.told());
+        CHECK_THAT(run.err, Catch::Contains("raya: warning: RAYA_BUILD_OPTIONS: -cl-mad-enable may change"));
+    }
+}
+
+TEST_CASE("RAYA_TUNED is off, or not set", "[cli]") {
+    const ScratchFolder outputs;
+    const Words words = render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4"});
+    for (const char* value : {"maybe", "on", "OFF", "0"})
+        check_refused(outputs, words, 2, {std::string("RAYA_TUNED=") + value + ": must be off, or not set"},
+                      {.variables = {{"RAYA_TUNED", value}}});
+    check_refused(outputs, {"bench", "--size", "8"}, 2, {"RAYA_TUNED=maybe"}, {.variables = {{"RAYA_TUNED", "maybe"}}});
+}
+
+TEST_CASE("a driver with two ICD entries lists its devices once, and equal devices have a number each", "[cli]") {
+    const ScratchFolder vendors;
+    const fs::path entry = "/etc/OpenCL/vendors/pocl.icd";
+    if (!fs::exists(entry)) return;
+    for (const char* name : {"a.icd", "b.icd"}) fs::copy_file(entry, vendors / name);
+    const auto devices = [&](const char* of_pocl) {
+        const RunOutcome run =
+            run_raya({"devices"}, {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"POCL_DEVICES", of_pocl}}});
+        INFO(run.told());
+        CHECK(run.code == 0);
+        return std::count(run.out.begin(), run.out.end(), '\n');
+    };
+    const auto one = devices("pthread");
+    CHECK(devices("pthread basic") == one + 2);  // a row and a version
+    CHECK(devices("pthread pthread") == one + 2);
+    const ScratchFolder outputs;
+    const auto render = [&](const char* device) {
+        return run_raya({"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "8", "--pes", "8",
+                         "--lanes", "4", "-q", "--device", device},
+                        {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"POCL_DEVICES", "pthread pthread"}}});
+    };
+    for (const char* device : {"0", "1", "cpu", "0,1"}) CHECK(render(device).code == 0);
+    const RunOutcome none = render("no such device");
+    CHECK(none.code == 3);
+    CHECK_THAT(none.err, Catch::Contains("\n  1: ") && !Catch::Contains("\n  2: "));
 }
 
 TEST_CASE("an unknown device ends with the list of those that there are", "[cli]") {

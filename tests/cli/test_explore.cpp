@@ -27,7 +27,7 @@ TEST_CASE("explore writes a page and says what it opens with", "[cli]") {
     const std::string html = file_contents(page);
     CHECK_THAT(html, StartsWith("<!doctype html>"));
     CHECK_THAT(html, Contains("<span>--mapping</span> <span>cyclic:3</span> <span>--pes</span> <span>20</span>"));
-    CHECK_THAT(html, Contains("raya explore: " + scene_file("spheres")));
+    CHECK_THAT(html, Contains("raya explore: spheres.nff"));
     CHECK(folder.entries() == 1);
     const RunOutcome again =
         run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));

@@ -1,11 +1,16 @@
 // Sequences of images: which frames, which cameras, what is rendered again and what is not.
 #include <fmt/core.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <thread>
 
 #include "host/cli/camera_path.hpp"
 #include "host/cli/frame_options.hpp"
+#include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
 #include "host/files/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
@@ -118,7 +123,7 @@ class Sequence {
         const RunOutcome run = run_raya(words(more));
         INFO(run.told());
         REQUIRE(run.code == 0);
-        CHECK(run.err.empty());
+        CHECK(run.messages().empty());
         const std::size_t at = run.out.find(" frames, ");
         REQUIRE(at != std::string::npos);
         return std::stoi(run.out.substr(at + 9));
@@ -233,6 +238,64 @@ TEST_CASE("frames of the torus", "[cli][frames]") {
     CHECK_THAT(out(), Catch::Contains("2 frames, 0 rendered"));
 }
 
+TEST_CASE("a record keeps the frames of all processes that write it", "[cli][frames]") {
+    const ScratchFolder folder;
+    const std::string file = folder / "t-frames.json";
+    constexpr std::uint32_t kProcesses = 8, kFrames = 12;
+    std::vector<pid_t> children;
+    for (std::uint32_t process = 0; process < kProcesses; ++process) {
+        children.push_back(::fork());
+        REQUIRE(children.back() >= 0);
+        if (children.back() > 0) continue;
+        FrameRecord record(file);
+        for (std::uint32_t i = 0; i < kFrames; ++i) {
+            record.add({process * kFrames + i, "settings", "pixels", 1, 1, {}}, {});
+            record.write();
+        }
+        ::_exit(0);
+    }
+    for (const pid_t child : children) {
+        int status = -1;
+        ::waitpid(child, &status, 0);
+        CHECK(status == 0);
+    }
+    const FrameRecord record(file);
+    for (std::uint32_t number = 0; number < kProcesses * kFrames; ++number) {
+        CAPTURE(number);
+        CHECK(record.find(number, "settings", {}) != nullptr);
+    }
+    CHECK(folder.entries() == 1);  // no lock is left
+}
+
+TEST_CASE("a process keeps its own frames and those that others have written since it began", "[cli][frames]") {
+    const ScratchFolder folder;
+    FrameRecord one(folder / "t-frames.json"), other(folder / "t-frames.json");
+    one.add({1, "one", "pixels", 1, 1, {}}, {});
+    one.add({2, "one", "pixels", 1, 1, {}}, {});
+    one.write();
+    other.add({2, "other", "pixels", 1, 1, {}}, {});
+    other.write();
+    for (const FrameRecord& record : {other, FrameRecord(folder / "t-frames.json")}) {
+        CHECK(record.find(1, "one", {}) != nullptr);
+        CHECK(record.find(2, "other", {}) != nullptr);  // written last
+    }
+}
+
+TEST_CASE("several processes render a sequence into one folder, and its record has all frames", "[cli][frames]") {
+    const Sequence s;
+    std::vector<std::thread> processes;
+    std::array<int, 3> codes{};
+    for (int part = 0; part < 3; ++part)
+        processes.emplace_back([&, part] {
+            const std::string range = fmt::format("{}:{}/6", 2 * part + 1, 2 * part + 2);
+            codes[static_cast<std::size_t>(part)] = run_raya(s.words({"--frames", range})).code;
+        });
+    for (std::thread& process : processes) process.join();
+    CHECK(codes == std::array<int, 3>{});
+    CHECK(s.record()["frames"].size() == 6);
+    CHECK(s.rendered({"--frames", "1:6"}) == 0);
+}
+
 TEST_CASE("what cannot be a sequence is refused before anything is rendered", "[cli][frames]") {
     const ScratchFolder outputs;
     const std::string image = outputs / "t.ppm";
@@ -255,7 +318,9 @@ TEST_CASE("what cannot be a sequence is refused before anything is rendered", "[
         refused(options, {"is of one image"});
     }
     check_refused(outputs, {"render", scene_file("centre"), "-o", "-", "--frames", "1:4", "--turn", "90"}, 2,
-                  {"-o -", "many files"});
+                  {"--output -", "many files"});
+    for (const char* option : {"--report", "--cost", "--mask"})
+        refused({"--frames", "1:4", "--turn", "90", option, "-"}, {std::string(option) + " -: frames are many files"});
     const ScratchFolder other;
     write_whole_file(other / "t-frames.json", "{\"kind\": \"mine\"}");
     const RunOutcome run =

@@ -141,8 +141,8 @@ TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --
     const RunOutcome run = run_raya(words);
     INFO(run.told());
     CHECK(run.code == 0);
-    CHECK(run.err == "raya: warning: " + scene + ":8: entity 'la' of another dialect, skipped (2 in all)\n" +
-                         "raya: warning: " + scene + ":10: polygon without area, left out\n");
+    CHECK(run.messages() == "raya: warning: " + scene + ":8: entity 'la' of another dialect, skipped (2 in all)\n" +
+                                "raya: warning: " + scene + ":10: polygon without area, left out\n");
     const Document report = Document::parse(file_contents(folder / "x.json"));
     REQUIRE(report["skipped"].size() == 2);
     CHECK(report["skipped"][0] ==
@@ -172,13 +172,13 @@ TEST_CASE("two names of one file are refused, however they are written", "[cli]"
         const RunOutcome run = run_raya(
             {"render", scene_file("planes"), "-o", folder / one, "--report", (folder.path() / other).string()});
         CHECK(run.code == 2);
-        CHECK_THAT(run.err, Catch::Contains("named twice"));
+        CHECK_THAT(run.err, Catch::Contains("the same file as"));
     }
     const std::string scene = folder / "scene.nff";
     std::filesystem::copy(scene_file("planes"), scene);
     const RunOutcome run = run_raya({"render", scene, "-o", folder / "x.pfm", "--report", folder / "d/../scene.nff"});
     CHECK(run.code == 2);
-    CHECK_THAT(run.err, Catch::Contains("named twice"));
+    CHECK_THAT(run.err, Catch::Contains("would overwrite the input SCENE"));
     CHECK(file_contents(scene) == file_contents(scene_file("planes")));
     CHECK(folder.entries() == 3);
 }

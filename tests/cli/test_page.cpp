@@ -107,8 +107,7 @@ TEST_CASE("the page of a bench has rates, comparison and roofline", "[cli][page]
                Contains("held against no baseline") && Contains("peak was not measured"));
     const std::string html =
         check_page(folder, joined(bench, {"--compare", folder / "base.json", "--tolerance", "100"}));
-    CHECK_THAT(html, Contains("Held against " + std::string(folder / "base.json")) && Contains("op/byte") &&
-                         Contains("Mrays/s"));
+    CHECK_THAT(html, Contains("Held against base.json") && Contains("op/byte") && Contains("Mrays/s"));
     CHECK(Document::parse(file_contents(folder / "r.json"))["compared"]["rows"].size() == 1);
 }
 
@@ -156,7 +155,7 @@ TEST_CASE("what raya page refuses names the reason and leaves nothing behind", "
     CHECK(known.code == 0);
     const RunOutcome twice = run_raya(small_render(folder, {"--report", page, "--page", page}));
     CHECK(twice.code == 2);
-    CHECK_THAT(twice.err, Contains("named twice"));
+    CHECK_THAT(twice.err, Contains("the same file as --report"));
 }
 
 TEST_CASE("reports with something missing or of another kind are refused, never worse", "[cli][page]") {

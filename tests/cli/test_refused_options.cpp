@@ -179,8 +179,9 @@ TEST_CASE("empty values, negative counts and one file named twice are refused", 
         check_refused(outputs, {"render", scene, "-o", image, option, ""}, 2, {option, "must not be empty"});
     check_refused(outputs, {"generate", "random", "5", "--seed", "-1", "-o", image}, 2,
                   {"--seed -1: out of range", "0..2^64-1"});
-    check_refused(outputs, {"render", scene, "-o", image, "--cost", image}, 2, {"named twice"});
-    check_refused(outputs, {"render", scene, "-o", image, "--report", scene}, 2, {"planes.nff", "named twice"});
+    check_refused(outputs, {"render", scene, "-o", image, "--cost", image}, 2, {"--cost", "the same file as --output"});
+    check_refused(outputs, {"render", scene, "-o", image, "--report", scene}, 2,
+                  {"--report", "would overwrite the input SCENE", "planes.nff"});
 }
 
 }  // namespace raya

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <set>
 
@@ -15,12 +16,12 @@ namespace {
 using Names = std::set<std::string>;
 
 /// File names of all libraries that raya and the processes that it starts load, as LD_DEBUG of ld.so(8) tells them.
-Names libraries_of(const std::vector<std::string>& arguments) {
+Names libraries_of(const std::vector<std::string>& arguments, int code = 0) {
     const ScratchFolder told;
     const RunOutcome run =
         run_raya(arguments, {.variables = {{"LD_DEBUG", "files"}, {"LD_DEBUG_OUTPUT", told / "process"}}});
     INFO(run.told());
-    REQUIRE(run.code == 0);
+    REQUIRE(run.code == code);
     Names names;
     const std::regex initialised("calling init: .*/([^/\n]+)");
     for (const auto& process : std::filesystem::directory_iterator(told.path())) {
@@ -63,6 +64,31 @@ TEST_CASE("devices and renders to PFM and PPM load neither OpenImageIO nor TBB n
     for (const char* image : {"x.pfm", "x.ppm"})
         CHECK(with(libraries_of(small_render(outputs / image)), heavy).empty());
     CHECK(with(libraries_of(small_render(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
+}
+
+TEST_CASE("what is wrong with inputs is refused before a driver or OpenImageIO is loaded", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string scene = scene_file("planes"), image = outputs / "x.png", missing = outputs / "none";
+    std::ofstream(outputs / "bad.nff") << "v\nfrom 0 0 x\n";
+    const std::vector<std::vector<std::string>> refused = {
+        {"render", missing, "-o", image},
+        {"render", outputs / "bad.nff", "-o", image},
+        {"render", scene, "-o", outputs / "none/x.png"},
+        {"render", scene, "-o", image, "--size", "0"},
+        {"render", scene, "-o", image, "--kernel-dir", missing},
+        {"render", scene, "-o", image, "--camera-path", missing},
+        {"render", scene, "-o", image, "--frames", "3:1", "--turn", "90"},
+        {"bench", missing},
+        {"bench", "--tune", missing},
+        {"bench", "--tune", "--kernel-dir", missing},
+        {"bench", "--compare", missing},
+        {"explore", missing, "-o", outputs / "x.html"},
+        {"study", "fig7", missing, "-o", outputs / "d"},
+        {"verify", "--kernel-dir", missing}};
+    for (const std::vector<std::string>& words : refused) {
+        CAPTURE(words);
+        CHECK(with(libraries_of(words, 2), {"raya_pictures", "OpenImageIO", "libtbb", "libpocl"}).empty());
+    }
 }
 
 }  // namespace

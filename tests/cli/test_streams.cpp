@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "tests/cli/refusals.hpp"
@@ -144,6 +145,22 @@ TEST_CASE("two files on stdout, stdin read twice, and what cannot be a stream ar
         outputs,
         {"render", scene, "-o", outputs / "x.ppm", "--machine", "torus", "--packets", "-", "--replay", "simgrid"}, 2,
         {"give --packets FILE.csv.gz"});
+}
+
+TEST_CASE("redirected stdin and stdout are files that no output overwrites", "[cli][file_options]") {
+    const ScratchFolder folder;
+    const Shell shell{folder};
+    std::filesystem::copy(scene_file("planes"), folder / "s.nff");
+    const auto refused = [&](const std::string& line, const std::string& message) {
+        CAPTURE(line);
+        CHECK(shell(kRaya + line + " 2> told") == 2);
+        CHECK_THAT(file_contents(folder / "told"), Catch::Contains(message));
+        CHECK(file_contents(folder / "s.nff") == file_contents(scene_file("planes")));
+    };
+    refused("bench - --report s.nff < s.nff", "--report s.nff: would overwrite the input SCENE -");
+    refused("render s.nff -o - >> s.nff", "--output -: would overwrite the input SCENE s.nff");
+    refused("render s.nff -o - --report x >> x", "--report x: the same file as --output -");
+    refused("render s.nff -o - --report - >> x", "only one file can go to stdout");
 }
 
 TEST_CASE("messages call a scene on stdin stdin, with the line", "[cli]") {

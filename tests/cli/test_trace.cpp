@@ -155,7 +155,8 @@ TEST_CASE("a trace that cannot be is refused before anything is rendered", "[cli
     };
     CHECK_THAT(refused({"--trace", folder / "t.txt"}), Catch::Contains(".json.gz"));
     CHECK_THAT(refused({"--trace", folder / "no/t.json"}), Catch::Contains("no/t.json"));
-    CHECK_THAT(refused({"--trace", folder / "x.json", "--report", folder / "x.json"}), Catch::Contains("named twice"));
+    CHECK_THAT(refused({"--trace", folder / "x.json", "--report", folder / "x.json"}),
+               Catch::Contains("the same file as --report"));
     CHECK_THAT(refused({"--trace-events", "5"}), Catch::Contains("give --trace"));
     CHECK_THAT(refused({"--trace-pes", "5"}), Catch::Contains("give --trace"));
     CHECK_THAT(refused({"--trace", folder / "t.json", "--trace-events", "0"}), Catch::Contains("1 or more"));

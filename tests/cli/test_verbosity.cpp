@@ -47,7 +47,7 @@ std::string scene_to_be_warned_of(const ScratchFolder& folder) {
 TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout", "[cli][verbosity]") {
     const ScratchFolder folder;
     const RunOutcome usual = succeed(small_render(folder, {}));
-    CHECK(usual.err.empty());
+    CHECK(usual.messages().empty());
     const std::string picture = file_contents(folder / "x.ppm");
     const RunOutcome run = succeed(small_render(folder, {"-v"}));
     INFO(run.err);
@@ -60,6 +60,26 @@ TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout",
                              "set up device", "trace", "gather", "render", "write images", "write report"})
         CHECK(has_line(run.err, "raya: " + std::string(step) + ": [0-9]+\\.[0-9]{3} s"));
     CHECK_THAT(run.err, !Catch::Contains("options -cl-std"));
+}
+
+TEST_CASE("the first compiling of kernels is announced without a terminal, and then how long it took",
+          "[cli][verbosity]") {
+    const ScratchFolder cache, folder;
+    const std::vector<std::pair<std::string, std::string>> variables = {{"POCL_CACHE_DIR", cache.path()}};
+    const Words words = {
+        "render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--lanes", "16", "--accel",
+        "bvh"};  // seconds to compile
+    const RunOutcome first = run_raya(words, {.variables = variables}),
+                     second = run_raya(words, {.variables = variables});
+    INFO(first.told() + second.told());
+    CHECK(first.code == 0);
+    CHECK(std::regex_match(first.err, std::regex("raya: compiling kernels for .* \\(first run only\\) \\.\\.\\.\n"
+                                                 "raya: compiling kernels took [0-9]+\\.[0-9] s\n")));
+    CHECK(second.err.empty());
+    for (const auto& entry : std::filesystem::directory_iterator(cache.path())) std::filesystem::remove_all(entry);
+    Words quiet = words;
+    quiet.emplace_back("-q");
+    CHECK(run_raya(quiet, {.variables = variables}).err.empty());
 }
 
 TEST_CASE("-vv tells builds and the device's times too", "[cli][verbosity]") {

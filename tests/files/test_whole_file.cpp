@@ -148,22 +148,33 @@ TEST_CASE("write_whole_file writes through a link to a file that is not there ye
     CHECK_THROWS_WITH(write_whole_file(folder / "lost", "x"), Contains("nowhere' does not exist"));
 }
 
-TEST_CASE("written_file is one name for one file, there or not", "[whole_file]") {
+TEST_CASE("file_identity is the same for all names of a file, whether it exists or not", "[whole_file]") {
     const ScratchFolder folder;
     fs::create_directory(folder / "there");
     fs::create_directory_symlink("there", folder / "way");
     fs::create_symlink("there/new", folder / "link");
-    const fs::path file = written_file(folder / "there/new");
-    for (const char* other : {"there/./new", "way/new", "link", "there/../there/new", "way/../link", "there//new"}) {
-        CAPTURE(other);
-        CHECK(written_file(folder / other) == file);
-    }
-    CHECK(written_file(folder / "there/old") != file);
     const fs::path before = fs::current_path();
-    fs::current_path(folder / "there");
-    CHECK(written_file("new") == file);
-    CHECK(written_file("./new") == file);
-    fs::current_path(before);
+    for (const bool exists : {false, true}) {
+        CAPTURE(exists);
+        if (exists) write_whole_file(folder / "there/new", "x");
+        const std::string file = file_identity(folder / "there/new");
+        for (const char* other :
+             {"there/./new", "way/new", "link", "there/../there/new", "way/../link", "there//new"}) {
+            CAPTURE(other);
+            CHECK(file_identity(folder / other) == file);
+        }
+        CHECK(file_identity(folder / "there/old") != file);
+        fs::current_path(folder / "there");
+        CHECK(file_identity("new") == file);
+        CHECK(file_identity("./new") == file);
+        fs::current_path(before);
+    }
+    fs::create_hard_link(folder / "there/new", folder / "hard");
+    CHECK(file_identity(folder / "hard") == file_identity(folder / "there/new"));
+    CHECK(file_identity(folder / "none/new") == file_identity(folder / "none/./new"));
+    CHECK(file_identity(folder / "none/new") != file_identity(folder / "none/old"));
+    for (const std::string& other : {std::string("/dev/null"), std::string(folder / "there")})
+        CHECK(file_identity(other).empty());
 }
 
 TEST_CASE("write_whole_file writes a device or a pipe directly", "[whole_file]") {

@@ -270,8 +270,8 @@ TEST_CASE("an unknown extension is refused with those that are known", "[image_i
     for (const char* name : {"a.gif", "a", ".png", "a.png.gz"}) {
         CAPTURE(name);
         CHECK_THROWS_WITH(write_image(folder / name, awkward_image(), {}), Contains(name) && message);
-        CHECK_THROWS_WITH(check_writable_target(folder / name, kImageExtensions), Contains(name) && message);
-        CHECK_THROWS_AS(check_writable_target(folder / name, kImageExtensions), UserError);
+        CHECK_THROWS_WITH(check_image_name(folder / name, kImageExtensions), Contains(name) && message);
+        CHECK_THROWS_AS(check_image_name(folder / name, kImageExtensions), UserError);
     }
     for (const char* name : {"cost.png", "cost.ppm"})
         CHECK_THROWS_WITH(write_image(folder / name, GreyImage{1, 1, {1}}, {}), Contains("use one of .exr, .pfm"));
@@ -281,8 +281,7 @@ TEST_CASE("an unknown extension is refused with those that are known", "[image_i
 TEST_CASE("a bad target is refused before and at writing, and nothing is left", "[image_io]") {
     const ScratchFolder folder;
     fs::create_symlink("/dev/full", folder / "full.png");
-    check_writable_target(folder / "new.png", kImageExtensions);
-    CHECK_THROWS_AS(check_writable_target(folder / "missing/a.png", kImageExtensions), UserError);
+    check_image_name(folder / "new.png", kImageExtensions);
     CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", awkward_image(), {}), Contains("does not exist"));
     CHECK_THROWS_WITH(write_image(folder / "full.png", awkward_image(), {}), Contains("No space left on device"));
     Image wide{1'000'001, 1, {}};  // libpng's limit is a million

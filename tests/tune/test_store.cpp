@@ -146,6 +146,18 @@ TEST_CASE("a file that cannot be used is told of once, ignored, and written over
     CHECK_THROWS_AS(tuned_place(device), UserError);  // a folder lies there
 }
 
+TEST_CASE("a file that other users may write is told of and ignored", "[tune]") {
+    const OwnCache cache;
+    const DeviceInfo device = some_device();
+    keep_tuned(device, kFile);
+    std::filesystem::permissions(tuned_place(device), std::filesystem::perms(0666));
+    Warned warned;
+    CHECK_FALSE(warned.source(device, kFile.entries[0].what));
+    REQUIRE(warned.texts.size() == 1);
+    CHECK_THAT(warned.texts[0],
+               Catch::Contains("other users may write '") && Catch::Contains("(mode 0666); the file is ignored"));
+}
+
 TEST_CASE("RAYA_TUNED=off, and a home that is no absolute path, leave the defaults", "[tune]") {
     const OwnCache cache;
     const DeviceInfo device = some_device();
