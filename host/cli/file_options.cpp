@@ -9,6 +9,7 @@
 #include "host/error.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/whole_file.hpp"
+#include "host/kernels/kernel_source.hpp"
 
 namespace raya {
 namespace {
@@ -27,6 +28,7 @@ class FileCheck {
 
     void read_kernels(const NamedFile& folder) {
         constexpr std::string_view kKernels = "kernels/";
+        check_folder({.folder = folder.file});
         for (const auto& [name, text] : embedded_files())
             if (name.starts_with(kKernels))
                 read({folder.option, (fs::path(folder.file) / name.substr(kKernels.size())).string()});

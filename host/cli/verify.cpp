@@ -130,7 +130,6 @@ void run_verify(const VerifyCommand& command) {
                                   .lanes = command.lanes,
                                   .done = command.worker_done};
     if (command.lines >= 0) return run_worker(command.lines, command.device, command.worker_device, settings);
-    check_folder(settings.sources);
     std::vector<DeviceChecks> all;
     bool right = true;
     for (std::size_t devices = 1; all.size() < devices;) {

@@ -167,8 +167,8 @@ TEST_CASE("a folder without permission to write is refused", "[cli]") {
 
 TEST_CASE("a folder without kernels is refused", "[cli]") {
     const ScratchFolder empty;
-    check_render_options({{{"--kernel-dir", empty / "missing"}, {"--kernel-dir", "missing/ring/trace.cl"}},
-                          {{"--kernel-dir", empty.path()}, {"--kernel-dir", "ring/trace.cl", "kernels/"}}});
+    check_render_options({{{"--kernel-dir", empty / "missing"}, {"--kernel-dir", "cannot read kernel file", "missing/"}},
+                          {{"--kernel-dir", empty.path()}, {"--kernel-dir", "cannot read kernel file", "kernels/"}}});
 }
 
 }  // namespace
