@@ -10,7 +10,6 @@
 
 #include "host/files/module.hpp"
 #include "host/files/program.hpp"
-#include "host/machine/unit_text.hpp"
 #include "host/ranks/mpi_module.hpp"
 
 namespace raya {
@@ -80,7 +79,7 @@ std::string Mpirun::run(std::uint32_t ranks, std::optional<std::uint32_t> thread
     std::string words = telling_line(run.err);
     if (words.empty())
         words = run.not_started != 0 ? std::generic_category().message(run.not_started) : ending_text(run.status);
-    throw RanksFailure(fmt::format("{}: {}", counted(ranks, "rank"), words));
+    throw RanksFailure(fmt::format("{} {}: {}", ranks, ranks == 1 ? "rank" : "ranks", words));
 }
 
 std::string telling_line(const std::string& said) {
