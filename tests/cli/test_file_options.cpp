@@ -13,6 +13,7 @@
 #include "host/tune/store.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/whole_tree.hpp"
+#include "tests/kernels/write_kernels.hpp"
 
 namespace raya {
 namespace {
@@ -125,8 +126,8 @@ TEST_CASE("no command overwrites kernels that it reads, or what it reads in the 
           "[cli][file_options]") {
     const auto parser = parser_of_all();
     const ScratchFolder others, kernels, folder;
-    fs::create_directory(kernels / "ring");
-    write_whole_file(kernels / "ring/trace.cl", "content");
+    write_kernels(kernels.path());
+    const std::string kernel = file_contents(kernels / "ring/trace.cl");
     fs::create_symlink(fs::path(kernels / "ring/trace.cl"), others / "link");
     write_whole_file(folder / "fig7.csv", "content");
     fs::create_symlink(fs::path(folder / "fig7.csv"), others / "scene.nff");
@@ -144,7 +145,7 @@ TEST_CASE("no command overwrites kernels that it reads, or what it reads in the 
         check(FileUse::kRead, FileUse::kWrittenFolder, {others / "scene.nff", folder.path()});
     });
     CHECK(pairs > 60);
-    CHECK(file_contents(kernels / "ring/trace.cl") == "content");
+    CHECK((file_contents(kernels / "ring/trace.cl") == kernel));
     CHECK(file_contents(folder / "fig7.csv") == "content");
 }
 

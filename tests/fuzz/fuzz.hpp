@@ -25,8 +25,6 @@ inline void check_refusal(std::string_view message, std::string_view file) {
     if (message.size() < at + file.size() + 4) complain("a refusal without a reason", message);
     constexpr std::size_t kLongest = 2000;  // characters: one that repeats the input is of no help
     if (message.size() > kLongest) complain("a refusal of great length", message);
-    for (const char c : message)
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') complain("a control character in a refusal", message);
 }
 
 /// As above, and names a line of the file: "FILE:LINE: " or "FILE, line LINE: ".

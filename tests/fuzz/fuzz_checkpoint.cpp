@@ -28,7 +28,8 @@ RingState sizes() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const ScratchFolder folder;
-    static const StateSettings settings = {{"image", "4 x 4"}, {"scene", "\"a\""}};
+    static const StateSettings settings = {
+        {"image", "4 x 4"}, {"--cost", "yes"}, {"--strict", "no"}, {"another scene", "a"}};
     set_verbosity(kSilent);
     const KeepOptions options{.file = folder.write("render.rst", text_of(data, size)), .resume = true};
     try {

@@ -24,7 +24,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         again.write();
         if (read_file(file) != written) complain("changed by being written and read", written);
         again.add({.number = 1, .settings = "settings", .pixels = {}, .files = {}}, {frame});
+        again.write();
         if (again.find(1, "settings", {frame}) == nullptr) complain("a frame that was added is not found", written);
+        if (again.find(1, "others", {frame}) != nullptr) complain("a frame of other settings", written);
+        if (FrameRecord(file + ".none").find(1, "settings", {}) != nullptr) complain("a frame of no record", written);
     } catch (const UserError& error) {
         check_refusal(error.what(), file);
     }

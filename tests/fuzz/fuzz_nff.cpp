@@ -3,7 +3,9 @@
 #include <vector>
 
 #include "host/error.hpp"
+#include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_remark.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/triangulate.hpp"
@@ -39,8 +41,10 @@ void check_leniently(std::string_view text) {
     std::vector<NffRemark> remarks;
     const Scene scene = parse_nff(text, kFile, &remarks);
     check_round_trip(scene);
-    for (const NffRemark& remark : remarks)
+    for (const NffRemark& remark : remarks) {
         if (remark.count == 0 || remark.line < 1) complain("a remark without count or line", remark.what);
+        check_refusal_with_line(remark_text(kFile, remark), kFile);
+    }
     if (remarks.empty() && !(parse_nff(text, kFile) == scene)) complain("skipped without a remark", text);
 }
 
@@ -48,6 +52,8 @@ void check_leniently(std::string_view text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = text_of(data, size);
+    if (const auto other = foreign_format(text); !other.empty() && !other.starts_with("a"))
+        complain("a format without an article", other);
     try {
         check_leniently(text);
     } catch (const UserError& error) {

@@ -43,10 +43,40 @@ void check_choices(const std::string& file) {
     if (warnings > 1) complain("warned more than once", file);
 }
 
+/// Folders and names that no file has: each is used, or refused with a reason.
+void check_surroundings(const ScratchFolder& folder) {
+    DeviceInfo odd = kDevice;
+    odd.name = "--a  b/c(R)-- 1.0+x";
+    if (tuned_file_name(odd).find_first_of("/ ()") != std::string::npos) complain("a file name", tuned_file_name(odd));
+    const auto is_refused = [](auto call) {
+        try {
+            call();
+        } catch (const UserError& error) {
+            return !std::string_view(error.what()).empty();
+        }
+        return false;
+    };
+    ::setenv("RAYA_TUNED", "maybe", 1);
+    if (!is_refused([] { kept_choices({}); })) complain("accepted", "RAYA_TUNED=maybe");
+    ::setenv("RAYA_TUNED", "off", 1);
+    if (kept_choices({})) complain("used", "RAYA_TUNED=off");
+    ::unsetenv("RAYA_TUNED");
+    ::setenv("XDG_CACHE_HOME", "no/absolute/path", 1);
+    ::setenv("HOME", folder.path("").c_str(), 1);
+    if (is_refused([] { tuned_place(kDevice); })) complain("refused", "HOME");
+    if (const TunedSource source = kept_choices({}); source && source(kDevice, {})) complain("used", "no file");
+    ::unsetenv("HOME");
+    if (!is_refused([] { tuned_place(kDevice); }) || kept_choices({})) complain("accepted", "no folder");
+    ::setenv("XDG_CACHE_HOME", "/dev/null", 1);
+    if (!is_refused([] { tuned_place(kDevice); })) complain("accepted", "/dev/null");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const ScratchFolder folder;
+    static const bool once = (check_surroundings(folder), true);
+    if (!once) return 0;
     ::setenv("XDG_CACHE_HOME", folder.path("").c_str(), 1);
     static const std::string file = tuned_place(kDevice).string();
     const std::string text = with_version(std::string(text_of(data, size)));

@@ -1,29 +1,35 @@
 #!/usr/bin/env bash
 # The files of tests/fuzz/corpus reach at least 95 % of the branches of raya's readers of files:
-#   tests/tools/test_reader_coverage.sh BUILD [GCOVR ARGS]    BUILD: a build of raya. The readers are compiled again, without optimisation, in
-#                                                             BUILD/reader_coverage; e.g. --html-details FILE
-# Prints the figure of each file. Exit code 77: no gcovr (tools/setup).
+#   tests/tools/test_reader_coverage.sh BUILD      BUILD: a build of raya. The readers are compiled again in BUILD/reader_coverage.
+# Prints the figures of each file. Branches are those of the source, as clang counts them: gcov, gcovr's option --exclude-throw-branches too,
+# counts several for each object that is destroyed, which no input decides. Exit code 77: no clang or no llvm-cov of its version.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 build=$(readlink -f "$1")
-shift
 folder=$build/reader_coverage
 least=95  # percent
 
 say() { echo "test_reader_coverage.sh: $*" >&2; }
 
-command -v gcovr >/dev/null || { say "no gcovr (Debian: gcovr); branches were not counted"; exit 77; }
+for tool in clang++-15 llvm-profdata-15 llvm-cov-15; do
+    command -v $tool >/dev/null || { say "no $tool (tools/setup --gpu); branches were not counted"; exit 77; }
+done
 mkdir -p "$folder"
 log=$folder/log
 {
-    cmake -G Ninja -S "$root/tests/fuzz" -B "$folder" -DCMAKE_CXX_COMPILER=g++ -DRAYA_FUZZ=coverage -DRAYA_BUILD="$build" &&
+    cmake -G Ninja -S "$root/tests/fuzz" -B "$folder" -DCMAKE_CXX_COMPILER=clang++-15 -DRAYA_FUZZ=coverage -DRAYA_BUILD="$build" &&
         cmake --build "$folder" -j2
 } >"$log" 2>&1 || { cat "$log"; say "the readers could not be built"; exit 1; }
-find "$folder" -name '*.gcda' -delete
+rm -f "$folder"/*.profraw
+objects=()
 for corpus in "$root"/tests/fuzz/corpus/*; do
-    "$folder/fuzz_$(basename "$corpus")" "$corpus" >"$log" 2>&1 || { cat "$log"; say "a find"; exit 1; }
+    reader=$(basename "$corpus")
+    LLVM_PROFILE_FILE=$folder/$reader.profraw "$folder/fuzz_$reader" "$corpus" >"$log" 2>&1 || { cat "$log"; say "a find"; exit 1; }
+    objects+=(-object "$folder/fuzz_$reader")
 done
-filters=()
-while read -r file; do filters+=(--filter "${file//./\\.}\$"); done <"$folder/reader_files.txt"
-cd "$root"
-gcovr --root . --object-directory "$folder" "${filters[@]}" --exclude-throw-branches --branches --fail-under-branch $least "$@" "$folder"
+llvm-profdata-15 merge -o "$folder/all.profdata" "$folder"/*.profraw
+mapfile -t files <"$folder/reader_files.txt"
+llvm-cov-15 report --show-branch-summary --show-region-summary=0 --show-functions=0 -instr-profile="$folder/all.profdata" "${objects[@]:1}" \
+    "${files[@]}" 2>"$log" | sed 's/   */  /g' | tee "$folder/report"
+reached=$(awk '$1 == "TOTAL" { print $NF }' "$folder/report")
+awk -v least=$least -v reached="${reached%\%}" 'BEGIN { exit !(reached >= least) }' || { say "$reached of the branches; $least % are wanted"; exit 1; }
