@@ -119,7 +119,7 @@ TEST_CASE("what a format cannot hold is warned of, and refused where nothing is 
     const RunOutcome warned = render("s 0 0 0 1000\ns 9 9 9 1e-5\n", "spa22");
     INFO(warned.told());
     CHECK(warned.code == 0);
-    CHECK_THAT(warned.err, Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are not seen") &&
+    CHECK_THAT(warned.messages(), Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are not seen") &&
                                Catch::Contains("e6m15 holds beside a length of 1e+06"));
     const Document report = Document::parse(file_contents(folder / "x.json"));
     REQUIRE(report["warnings"].size() == 1);
