@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <set>
 
 #include "host/files/json.hpp"
 #include "host/files/standard_streams.hpp"
@@ -60,10 +61,13 @@ BenchReport report_of(const Json& json) {
                        .rows = {}};
     for (const Json& row : json.at("rows").elements()) report.rows.push_back(row_of(row));
     if (report.rows.empty()) throw JsonError("it has no rows");
-    for (const BenchMeasurement& row : report.rows)
+    std::set<std::string> measured;
+    for (const BenchMeasurement& row : report.rows) {
+        const std::string name = fmt::format("row {} of {} lanes", row.format, row.lanes);
         if (!can_be_a_time(row.best_s) || !can_be_a_time(row.median_s) || row.rays == 0)
-            throw JsonError(
-                fmt::format("row {} of {} lanes has rays or times that are not positive", row.format, row.lanes));
+            throw JsonError(name + " has rays or times that are not positive");
+        if (!measured.insert(measured_json(row).dump()).second) throw JsonError(name + " occurs twice");
+    }
     return report;
 }
 

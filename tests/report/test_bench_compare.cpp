@@ -95,6 +95,7 @@ TEST_CASE("files that are no bench report are refused with a remedy", "[bench]")
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0].erase("hash"); })), Contains("hash"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0]["lanes"] = "many"; })),
                Contains("b.json:1: rows[0].lanes: \"many\" is not a whole number"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].push_back(j["rows"][0]); })), Contains("occurs twice"));
     for (const char* part : {"best", "median"})
         for (const double bad : {0.0, -1.0})
             CHECK_THAT(refusal(folder, changed([&](auto& j) { j["rows"][0]["ms"][part] = bad; })),
