@@ -43,7 +43,7 @@ void check_targets(const CLI::App& parsed, const RenderCommand& command) {
     if (!packets.empty()) check_packets(packets);
     if (!command.torus.replay.empty()) check_replay(parsed, command.torus);
     if (!command.page.empty()) check_page_name("--page", command.page);
-    check_image_name(command.image, kImageExtensions);
+    if (!command.image.empty()) check_image_name(command.image, kImageExtensions);
     if (!command.cost.empty()) check_image_name(command.cost, kGreyImageExtensions);
     if (!command.mask.empty()) check_image_name(command.mask, kImageExtensions);
     if (!command.mask.empty() && command.render.antialias != "supersample")
@@ -105,12 +105,13 @@ ImageAttributes image_attributes(const RenderReport& report, const std::string& 
 }
 
 std::optional<ImageCodes> codes_of(const RenderCommand& command) {
-    if (!holds_codes(command.image)) return {};
+    if (command.image.empty() || !holds_codes(command.image)) return {};
     const Tone tone = tone_of(command.tone, command.image);
     return ImageCodes{tone.exposure, tone_curve_name(tone.curve), tone.gamma};
 }
 
 void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes) {
+    if (command.image.empty()) return;
     const Tone tone = tone_of(command.tone, command.image);
     for (const auto& attribute : tone_attributes(tone)) attributes.push_back(attribute);
     write_image(command.image, image, attributes, tone);
@@ -119,7 +120,7 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 void write_report(const RenderCommand& command, const RenderReport& report) {
     if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report).dump(2) + "\n");
     if (!is_quiet() && command.summary) fmt::print("{}", printable(human_summary(report)));
-    if (!command.profile) return;
+    if (!command.profile || !command.prints) return;
     const auto& measured = report.measured;
     fmt::print("\n{}\n{}", profile_table(measured.build_s, measured.builds, measured.commands),
                roofline_table(*measured.roofline));

@@ -11,12 +11,17 @@
 #include "host/cli/scene_input.hpp"
 #include "host/cli/tone_options.hpp"
 #include "host/cli/torus_options.hpp"
+#include "host/files/progress.hpp"
 #include "host/files/standard_streams.hpp"
 #include "host/files/verbosity.hpp"
 #include "host/image/image_io.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/view_json.hpp"
+#include "host/ring/ring_result.hpp"
+#include "host/torus/history.hpp"
+#include "host/torus/packet_record.hpp"
+#include "host/torus/torus_result.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -30,6 +35,10 @@ struct RenderCommand {
     KeepOptions keep;
     TraceOptions trace;
     bool profile = false, summary = true;
+    bool prints = true;                             // what --profile shows
+    ProgressCallback progress{};                    // of a caller that shows it; empty: a bar on a terminal
+    PixelSubset pixels{};                           // of the torus: that its primary rays are of
+    bool keep_costs = false, keep_packets = false;  // for a caller that reads them from Render
 
     /// Options whose files are numbered where there are frames, with their values; empty: not given.
     std::vector<std::pair<const char*, std::string>> files() const {
@@ -46,13 +55,34 @@ struct RenderCommand {
     bool roofline() const { return profile || !page.empty(); }
 };
 
-/// Renders on a ring machine, on the torus machine, and writes what was asked for: in rank 0, where there are several.
-/// What the report tells; empty in other ranks.
-std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderRun& run);
-std::optional<RenderReport> render_on_torus(const RenderCommand& command, RenderRun& run);
+/// One render: its report, and the pixels and arrays that it counted, of a ring machine or of the torus.
+struct Render {
+    RenderReport report{};
+    std::optional<RingResult> ring{};
+    std::optional<TorusResult> torus{};
+    std::vector<PacketRecord> packets{};  // where RenderCommand::keep_packets asks for them
+    std::optional<TorusSettings> torus_settings{};
+    std::uint32_t lights = 0;                           // of the scene
+    std::optional<History> history{};                   // of the torus, with --async
+    std::vector<std::uint64_t> cycles{}, link_words{};  // of every superstep, [node] and [node][RAYA_LINKS]; with the
+                                                        // packets
+
+    const Image& image() const { return ring ? ring->image : torus->image; }
+};
+
+/// Renders on a ring machine, on the torus machine, and writes the files that the command names. Empty in other ranks
+/// than 0.
+std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run);
+std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& run);
 
 /// On the machine that the command names.
-std::optional<RenderReport> render_image(const RenderCommand& command, RenderRun& run);
+std::optional<Render> render_image(const RenderCommand& command, RenderRun& run);
+
+/// Adds all options of `raya render`, but not SCENE.
+void describe_render(CLI::App& command, RenderCommand& options);
+
+/// Refuses options that do not go together, and files that cannot be written. UserError.
+void check_render(const CLI::App& parsed, const RenderCommand& command);
 
 /// Refuses what frames cannot be written to, or what is of one image alone. UserError.
 void check_frames(const RenderCommand& command);

@@ -140,8 +140,8 @@ void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderR
         std::uint32_t renders = there == nullptr;
         ranks.broadcast(renders);
         if (renders != 0) {
-            const std::optional<RenderReport> report = render_image(one, run);
-            if (report) there = &record->add(entry_of(*report, frame.number, hash), files_of(one));
+            const std::optional<Render> made = render_image(one, run);
+            if (made) there = &record->add(entry_of(made->report, frame.number, hash), files_of(one));
         }
         if (there != nullptr) {
             tell(one, *there, renders == 0);

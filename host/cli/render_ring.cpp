@@ -82,20 +82,20 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 }  // namespace
 
-std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderRun& run) {
+std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
     RenderWatch& watch = run.watch;
     SceneInput& input = run.input;
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(run.options, scene);
-    settings.keep_costs = !command.cost.empty();
+    settings.keep_costs = command.keep_costs || !command.cost.empty();
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
     const StateFile state(command.keep);
-    const RingResult result = renderer.render(run.progress.callback(), state.keeping());
+    RingResult result = renderer.render(run.progress.callback(), state.keeping());
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "pes", result);
     watch.gather(session, ranks);
     if (!ranks.first()) return {};
@@ -114,7 +114,7 @@ std::optional<RenderReport> render_on_ring(const RenderCommand& command, RenderR
     state.remove();
     const ProgressBar tracing(watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); });
-    return report;
+    return Render{std::move(report), std::move(result)};
 }
 
 }  // namespace raya

@@ -24,7 +24,7 @@ void RenderProgress::next_image() {
 }
 
 ProgressCallback RenderProgress::callback() {
-    if (!bar_ || !bar_->active()) return {};
+    if (!bar_ || !bar_->active()) return callers_;
     if (images_ == 0) return [this](double share) { bar_->update(share); };
     return [this](double share) { bar_->update((static_cast<double>(done_) + share) / static_cast<double>(images_)); };
 }
@@ -43,8 +43,24 @@ RenderRun::RenderRun(const RenderCommand& command, Ranks& of)
       many_(command.frames.given()),
       pictures_{command.image, command.cost, command.mask} {}
 
+RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session)
+    : ranks(Ranks::alone()),
+      watch(command.trace, command.roofline()),
+      progress(command.progress),
+      options(command.render),
+      input(std::move(scene)),
+      timing_(command.timing()),
+      many_(false),
+      device_(device),
+      session_(&session) {
+    change_view(options.view, input.scene);
+    tuned_.reset(new TunedUse(use_tuned(options.no_tuned, &input.warnings)));
+    warn_of_build_options(input.warnings);
+    watch.observe(session, ranks);
+}
+
 Session& RenderRun::session() {
-    if (session_) return *session_;
+    if (session_ != nullptr) return *session_;
     tuned_.reset(new TunedUse(use_tuned(options.no_tuned, &input.warnings)));
     if (ranks.first()) warn_of_build_options(input.warnings);
     progress.stage("preparing");
@@ -53,7 +69,8 @@ Session& RenderRun::session() {
     // OpenImageIO's.
     for (const std::string& picture : pictures_)
         if (ranks.first() && !picture.empty()) load_encoder(picture);
-    session_.emplace(watch.steps().during("open device", [&] { return Session(device_, timing_); }));
+    own_session_.emplace(watch.steps().during("open device", [&] { return Session(device_, timing_); }));
+    session_ = &*own_session_;
     if (many_) session_->keep_programs();
     if (ranks.first()) session_->announce_compiling();
     watch.observe(*session_, ranks);

@@ -21,6 +21,8 @@ struct RenderCommand;
 class RenderProgress {
   public:
     RenderProgress(bool wanted, const std::string& what) : bar_(std::in_place, wanted, what) {}
+    /// For a caller that shows it.
+    explicit RenderProgress(ProgressCallback callers) : callers_(std::move(callers)) {}
 
     /// What runs from now on; of several images their number stands there.
     void stage(const std::string& what);
@@ -37,6 +39,7 @@ class RenderProgress {
 
   private:
     std::optional<ProgressBar> bar_;
+    ProgressCallback callers_;
     std::size_t images_ = 0, done_ = 0;  // 0: one image, which is shown stage by stage
 };
 
@@ -44,6 +47,9 @@ class RenderRun {
   public:
     /// Reads the scene: rank 0 does. UserError.
     RenderRun(const RenderCommand& command, Ranks& ranks);
+
+    /// Of one rank, with a scene that is there and a device that is open; both outlive this.
+    RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session);
 
     /// The device, opened at the first call with all that renders take from it, and what encodes the pictures. Of
     /// several images the programs are built once.
@@ -62,7 +68,8 @@ class RenderRun {
     std::vector<std::string> pictures_;
     std::unique_ptr<TunedUse> tuned_;
     cl::Device device_;
-    std::optional<Session> session_;
+    std::optional<Session> own_session_;
+    Session* session_ = nullptr;
 };
 
 }  // namespace raya

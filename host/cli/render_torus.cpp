@@ -26,11 +26,15 @@ namespace {
 struct ByProducts {
     ByProducts(const RenderCommand& command, const RenderWatch& watch, const TorusSettings& settings) {
         if (!command.torus.packets.empty()) packets.emplace();
+        keep_packets = command.keep_packets;
         if (watch.traces()) trace.emplace(settings.torus);
         if (settings.history) history.emplace(settings.torus, settings.packets);
     }
 
     std::optional<PacketTrace> packets;
+    bool keep_packets = false;
+    std::vector<PacketRecord> records;
+    std::vector<std::uint64_t> cycles, link_words;  // of every superstep
     std::optional<TorusTrace> trace;
     std::optional<HistoryRecorder> history;
 };
@@ -39,16 +43,23 @@ TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progre
     PacketSink packet_sink;
     SuperstepSink step_sink;
     NodeWorkSink work_sink;
-    if (makes.trace) step_sink = [&](const SuperstepDetail& step) { makes.trace->add_superstep(step); };
-    if (makes.packets || makes.trace)
+    if (makes.trace || makes.keep_packets)
+        step_sink = [&](const SuperstepDetail& step) {
+            if (makes.trace) makes.trace->add_superstep(step);
+            if (!makes.keep_packets) return;
+            makes.cycles.insert(makes.cycles.end(), step.cycles.begin(), step.cycles.end());
+            makes.link_words.insert(makes.link_words.end(), step.link_words.begin(), step.link_words.end());
+        };
+    if (makes.packets || makes.keep_packets || makes.trace)
         packet_sink = [&](const PacketRecord& record) {
             if (makes.packets) makes.packets->add(record);
+            if (makes.keep_packets) makes.records.push_back(record);
             if (makes.trace) makes.trace->add_packet(record);
         };
     if (makes.history) work_sink = [&](const NodeWork& work) { makes.history->add(work); };
     progress.stage("rendering");
-    return renderer.render(progress.callback(), packet_sink, step_sink, makes.packets ? 1 : TorusTrace::kPacketsEvery,
-                           work_sink);
+    return renderer.render(progress.callback(), packet_sink, step_sink,
+                           makes.packets || makes.keep_packets ? 1 : TorusTrace::kPacketsEvery, work_sink);
 }
 
 // Where the machine stands still, a queue is looked for that is long enough.
@@ -142,27 +153,30 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
 
 }  // namespace
 
-std::optional<RenderReport> render_on_torus(const RenderCommand& command, RenderRun& run) {
+std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
     RenderWatch& watch = run.watch;
     SceneInput& input = run.input;
     const Scene& scene = input.scene;
-    const TorusSettings settings = torus_settings(run.options, command.torus, scene);
+    TorusSettings settings = torus_settings(run.options, command.torus, scene);
+    settings.pixels = command.pixels;
     refuse_history_of_ranks(settings, ranks);
     Session& session = run.session();
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     ByProducts makes(command, watch, settings);
-    const TorusResult result = render_to_its_end(renderer, run.progress, makes);
+    TorusResult result = render_to_its_end(renderer, run.progress, makes);
     const std::vector<Json> of_ranks = rank_reports(ranks, session, "nodes", result);
     watch.gather(session, ranks);
     if (!ranks.first()) return {};
     run.progress.stage("writing");
     RenderReport report = make_report(command, input, settings, session.device(), result);
     report.ranks = of_ranks;
+    std::optional<History> history;
     if (makes.history) {
         run.progress.stage("simulating");
-        add_asynchronous_time(*report.torus, command, settings, makes.history->finish(), watch.steps());
+        history = makes.history->finish();
+        add_asynchronous_time(*report.torus, command, settings, *history, watch.steps());
     }
     write_images(command, result, report, scene, makes, watch.steps());
     if (command.roofline()) {
@@ -174,7 +188,14 @@ std::optional<RenderReport> render_on_torus(const RenderCommand& command, Render
     watch.steps().during("write report", [&] { write_report(command, report); });
     const ProgressBar tracing(watch.traces(), "writing the trace");
     watch.write(session, [&](TraceFile& file) { makes.trace->add_to(file, result, command.trace.pes); });
-    return report;
+    return Render{.report = std::move(report),
+                  .torus = std::move(result),
+                  .packets = std::move(makes.records),
+                  .torus_settings = settings,
+                  .lights = static_cast<std::uint32_t>(scene.lights.size()),
+                  .history = std::move(history),
+                  .cycles = std::move(makes.cycles),
+                  .link_words = std::move(makes.link_words)};
 }
 
 }  // namespace raya

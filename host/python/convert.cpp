@@ -1,0 +1,60 @@
+#include "host/python/convert.hpp"
+
+#include <fmt/core.h>
+
+namespace raya {
+namespace {
+
+std::string text_of(const std::string& option, const py::handle& value) {
+    if (py::isinstance<py::bool_>(value))
+        throw py::type_error(fmt::format("{}: True is for options without a value; give one", option));
+    if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value)) return py::str(value);
+    std::string text;
+    for (const py::handle part : value) text += (text.empty() ? "" : ",") + text_of(option, part);
+    return text;
+}
+
+bool holds_sequences(const py::handle& value) {
+    if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value)) return false;
+    for (const py::handle part : value)
+        if (py::isinstance<py::list>(part) || py::isinstance<py::tuple>(part) || py::isinstance<py::str>(part))
+            return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<std::string> option_words(const py::dict& options) {
+    std::vector<std::string> words;
+    for (const auto& [key, value] : options) {
+        std::string name = py::str(key);
+        while (name.ends_with('_')) name.pop_back();  // "from" is a word of Python's: from_
+        for (char& letter : name)
+            if (letter == '_') letter = '-';
+        const std::string option = "--" + name;
+        if (value.is_none() || value.ptr() == Py_False) continue;
+        if (value.ptr() == Py_True)
+            words.push_back(option);
+        else if (name == "light" && holds_sequences(value))
+            for (const py::handle light : value) words.push_back(option + '=' + text_of(option, light));
+        else
+            words.push_back(option + '=' + text_of(option, value));
+    }
+    return words;
+}
+
+py::object python_of(const Json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
+
+CostImage cost_image_of(const py::array& cost) {
+    const char kind = cost.dtype().kind();
+    if (cost.ndim() != 2 || (kind != 'u' && kind != 'i'))
+        throw py::value_error("cost: must be an array [height, width] of whole numbers, modelled cycles");
+    if (kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
+        throw py::value_error("cost: must not be negative");
+    const CostArray array(cost);
+    CostImage image{static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)), {}};
+    image.cycles.assign(array.data(), array.data() + array.size());
+    return image;
+}
+
+}  // namespace raya

@@ -1,0 +1,39 @@
+// The Python module raya._engine: renders, scenes and loads with numpy arrays. The package around it is raya/.
+#include "host/files/module.hpp"
+
+#include <dlfcn.h>
+#include <pybind11/pybind11.h>
+
+#include "host/error.hpp"
+#include "host/files/verbosity.hpp"
+#include "host/machine/does_not_fit.hpp"
+#include "host/python/session.hpp"
+#include "host/torus/standstill.hpp"
+#include "host/version.hpp"
+#include "kernels/shared/traffic.h"
+
+namespace {
+
+// What raya loads late lies beside this module, not beside the interpreter.
+std::filesystem::path own_folder() {
+    Dl_info info{};
+    ::dladdr(reinterpret_cast<void*>(&own_folder), &info);
+    return std::filesystem::canonical(info.dli_fname).parent_path();
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_engine, module) {
+    using namespace raya;
+    set_module_folder(own_folder());
+    set_verbosity(kSilent);  // warnings are Python's
+    const pybind11::object refused = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
+    pybind11::register_exception<Standstill>(module, "Deadlock", refused);
+    pybind11::register_exception<DoesNotFit>(module, "DoesNotFit", refused);
+    pybind11::register_exception<DeviceError>(module, "DeviceError", PyExc_RuntimeError);
+    module.attr("STATUS_WORDS") = std::uint32_t{RAYA_STATUS_WORDS};  // of a node, to the host in each superstep
+    module.attr("__version__") = raya_version();
+    add_scenes(module);
+    add_renders(module);
+    add_loads(module);
+}

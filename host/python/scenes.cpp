@@ -1,0 +1,149 @@
+// Scenes: reading, writing, generating and changing them.
+#include <fmt/core.h>
+#include <pybind11/stl.h>
+
+#include <CLI/CLI.hpp>
+
+#include "host/cli/scene_input.hpp"
+#include "host/cli/view_options.hpp"
+#include "host/embedded.hpp"
+#include "host/error.hpp"
+#include "host/files/whole_file.hpp"
+#include "host/machine/machine.hpp"
+#include "host/python/session.hpp"
+#include "host/scene/generate.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff_writer.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/random_view.hpp"
+#include "host/scene/spread.hpp"
+#include "host/scene/turn.hpp"
+
+namespace raya {
+namespace {
+
+Scene loaded(const std::string& file, bool strict) {
+    SceneInput input = read_scene(file, strict);
+    for (const std::string& text : input.warnings.texts())
+        if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+    return std::move(input.scene);
+}
+
+using Point = std::array<double, 3>;
+Point point_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Scene with_view(Scene scene, const py::kwargs& options) {
+    ViewOptions view;
+    CLI::App app;
+    add_view_options(app, view);
+    std::vector<std::string> words = option_words(options);
+    try {
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::ParseError& error) {
+        throw UserError(error.what());
+    }
+    change_view(view, scene);
+    return scene;
+}
+
+Scene turned_scene(Scene scene, double degrees) {
+    scene.view = turned(scene.view, degrees);
+    return scene;
+}
+
+Scene without_lights(Scene scene) {
+    scene.lights.clear();
+    return scene;
+}
+
+Scene example(const std::string& name) {
+    const auto file = embedded_files().find("scenes/" + name + ".nff");
+    if (file == embedded_files().end()) throw UserError(fmt::format("example '{}': raya carries no such scene", name));
+    Scene scene = parse_nff(file->second, file->first);
+    scene.name = name;
+    return scene;
+}
+
+std::size_t job_words(const Scene& scene) {
+    const Machine& spa = machine_named("spa");
+    return pack_job(scene, {{1, 1}, Sampling::kCentres, spa.bounces, cycles_of_events(), spa.format}).words().size();
+}
+
+void save(const Scene& scene, const std::string& path) { write_whole_file(path, write_nff(scene)); }
+
+void add_generators(py::module_& module) {
+    py::module_ g = module.def_submodule("generate", "Scenes that a program makes; those of raya generate.");
+    g.def("balls", generate_balls, py::arg("level") = 4,
+          "SPD's sphereflake: 1 + 9 + ... + 9^level spheres, level 0..6.");
+    g.def("lattice", generate_lattice, py::arg("size") = 12, "SPD's lattice: (size + 1)^3 spheres, cylinders; 1..64.");
+    g.def("gears", generate_gears, py::arg("size") = 4, "size^3 gear wheels, 1..16.");
+    g.def("uniform", generate_uniform, py::arg("count"), py::arg("voxels"),
+          "count spheres, 1..1000000, evenly over voxels = (x, y, z) of a cube.");
+    g.def("random", generate_random, py::arg("count"), py::arg("seed") = 1, "count spheres anywhere in a cube.");
+    g.def(
+        "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
+        "Seven spheres above a floor, as heavy and uneven as Kohata & Ito's figures have it.");
+    g.def("centre", generate_centre, "scenes/centre.nff.");
+}
+
+}  // namespace
+
+void add_scenes(py::module_& module) {
+    py::class_<Scene>(module, "Scene", "A scene: objects, surfaces, lights and a view. It never changes.")
+        .def_readonly("name", &Scene::name)
+        .def_property_readonly(
+            "width", [](const Scene& s) { return s.view.width; }, "Pixels.")
+        .def_property_readonly(
+            "height", [](const Scene& s) { return s.view.height; }, "Pixels.")
+        .def_property_readonly("objects", &Scene::object_count, "Spheres, planes, polygons and cones.")
+        .def_property_readonly(
+            "lights", [](const Scene& s) { return s.lights.size(); }, "Lights.")
+        .def_property_readonly(
+            "eye", [](const Scene& s) { return point_of(s.view.from); }, "(x, y, z), scene units.")
+        .def_property_readonly(
+            "at", [](const Scene& s) { return point_of(s.view.at); }, "What the view looks at.")
+        .def_property_readonly(
+            "nff", [](const Scene& s) { return write_nff(s); }, "str: the scene as NFF.")
+        .def("save", save, py::arg("path"), "Writes NFF; the file appears whole or not at all. ValueError.")
+        .def(
+            "renamed",
+            [](Scene s, const std::string& name) {
+                s.name = name;
+                return s;
+            },
+            py::arg("name"))
+        .def("with_view", with_view,
+             "The scene with another camera, background or lights: from_, at, up, angle, background, light, as raya "
+             "render has them. ValueError.")
+        .def("random_view", random_view, py::arg("seed"),
+             "From another place at the same distance, 5 to 75 degrees above the level of what is looked at.")
+        .def("turned", turned_scene, py::arg("degrees"), "After the eye went so far round what it looks at.")
+        .def("without_lights", without_lights, "No light, so no shadow rays.")
+        .def("scattered", scattered, py::arg("seed"), "Spheres of the cube [-1, 1]^3 about centres drawn from it.")
+        .def("moved_within", moved_within, "Each sphere moved until it lies within the voxel of its centre, of 4x4x4.")
+        .def("touching_walls", touching_walls, "The outermost spheres moved until they touch the cube's sides.")
+        .def(
+            "__eq__", [](const Scene& a, const Scene& b) { return a == b; }, py::is_operator())
+        .def("__repr__",
+             [](const Scene& s) {
+                 return fmt::format("<raya.Scene {}: {} objects, {}x{}>", s.name, s.object_count(), s.view.width,
+                                    s.view.height);
+             })
+        .def(py::pickle([](const Scene& s) { return py::make_tuple(s.name, write_nff(s)); },
+                        [](const py::tuple& state) {
+                            return parse_nff(state[1].cast<std::string>(), state[0].cast<std::string>());
+                        }));
+    module.def("load", loaded, py::arg("path"), py::arg("strict") = false,
+               "The scene of an NFF file. What NFF does not have is skipped with a warning, or refused where strict. "
+               "ValueError with file, line and reason.");
+    module.def("example", example, py::arg("name"),
+               "A scene that raya carries: centre, spheres, mirrors, glass, polygons, cones, planes. ValueError.");
+    module.def("job_words", job_words, py::arg("scene"),
+               "Words of 4 bytes that each PE of the SPA would hold of a scene.");
+    module.def(
+        "parse", [](const std::string& text, const std::string& name) { return parse_nff(text, name); },
+        py::arg("text"), py::arg("name") = "scene", "The scene of an NFF text. ValueError.");
+    add_generators(module);
+}
+
+}  // namespace raya

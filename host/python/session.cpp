@@ -1,0 +1,124 @@
+#include "host/python/session.hpp"
+
+#include <fmt/core.h>
+#include <pthread.h>
+#include <pybind11/stl.h>
+
+#include <csignal>
+#include <utility>
+
+#include "host/cl/device.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
+#include "host/cli/parse_failure.hpp"
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+// Drivers install handlers of their own (LLVM, in PoCL); Python's are put back.
+class SignalHandlers {
+  public:
+    SignalHandlers() {
+        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, nullptr, &before_[signal]);
+    }
+    ~SignalHandlers() {
+        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, &before_[signal], nullptr);
+    }
+    SignalHandlers(const SignalHandlers&) = delete;
+    SignalHandlers& operator=(const SignalHandlers&) = delete;
+
+  private:
+    struct sigaction before_[32]{};
+};
+
+// PoCL runs kernels in threads that it makes when it is asked for devices, and has the private memory of a work-group
+// on their stacks (host/cl/driver_call.cpp).
+cl::Device choose_device_with_stacks(const std::string& name) {
+    pthread_attr_t before, large;
+    ::pthread_getattr_default_np(&before);
+    ::pthread_attr_init(&large);
+    ::pthread_attr_setstacksize(&large, std::size_t{128} << 20);
+    ::pthread_setattr_default_np(&large);
+    const auto put_back = [&] { ::pthread_setattr_default_np(&before); };
+    try {
+        cl::Device device = choose_device(name);
+        put_back();
+        return device;
+    } catch (...) {
+        put_back();
+        throw;
+    }
+}
+
+void refuse_sequences(const RenderCommand& command) {
+    if (command.frames.given())
+        throw UserError("--frames, --turn and --camera-path are of many images: render each of them");
+}
+
+RenderCommand parse_options(CLI::App& program, const py::dict& options) {
+    RenderCommand command;
+    CLI::App* render = program.add_subcommand("render");
+    describe_render(*render, command);
+    std::vector<std::string> words = {"render"};
+    for (const std::string& word : option_words(options)) words.push_back(word);
+    parse_words(program, words);
+    refuse_sequences(command);
+    refuse_options_of_other_machines(*render, machine_named(command.render.machine));
+    check_files(*render);
+    check_render(*render, command);
+    return command;
+}
+
+// The options `cost` and `packets` name files; True keeps the arrays alone.
+bool takes_true(py::dict& options, const char* name) {
+    if (!options.contains(name) || options[name].ptr() != Py_True) return false;
+    options.attr("pop")(name);
+    return true;
+}
+
+// pixels=(stride, first): no option of the command line.
+PixelSubset pixels_of(py::dict& options) {
+    if (!options.contains("pixels")) return {};
+    const auto [stride, first] = options.attr("pop")("pixels").cast<std::pair<std::uint32_t, std::uint32_t>>();
+    if (stride == 0 || first >= stride) throw py::value_error("pixels: must be (stride, first), 0 <= first < stride");
+    return {stride, first};
+}
+
+}  // namespace
+
+PythonSession::PythonSession(const std::string& device)
+    : device_(choose_device_with_stacks(device)), session_(device_) {
+    session_.keep_programs();
+}
+
+PythonSession& PythonSession::shared(const std::string& device) {
+    static auto* const sessions = new std::map<std::string, PythonSession>;  // drivers outlive no static object
+    const SignalHandlers handlers;
+    return sessions->try_emplace(device, device).first->second;
+}
+
+std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict& given, const py::object& progress) {
+    py::dict options(given.attr("copy")());
+    const bool keeps_costs = takes_true(options, "cost"), keeps_packets = takes_true(options, "packets");
+    const PixelSubset pixels = pixels_of(options);
+    CLI::App program;
+    RenderCommand command = parse_options(program, options);
+    command.pixels = pixels;
+    command.render.scene = scene.name;
+    command.keep_costs = keeps_costs || !command.cost.empty();
+    command.keep_packets = keeps_packets;
+    command.summary = command.prints = false;
+    command.progress = [&progress](double share) {
+        const py::gil_scoped_acquire python;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (!progress.is_none()) progress(share);
+    };
+    const py::gil_scoped_release free;
+    const std::lock_guard lock(mutex_);
+    const SignalHandlers handlers;
+    RenderRun run(command, SceneInput{scene, {}, {}}, device_, session_);
+    return std::make_shared<Render>(render_image(command, run).value());
+}
+
+}  // namespace raya
