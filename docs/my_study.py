@@ -1,0 +1,29 @@
+"""Which mapping stays even while the camera turns?
+
+What is the mean imbalance of {scene} over a turn of the camera, for three mappings?
+
+- {scene} at {size} x {size} on {pes} PEs, {frames} frames of one turn.
+- u = (max load - mean load) / mean load, from one cost image of each frame.
+"""
+import pandas as pd
+import raya
+from raya.lab import Page, Plot, Table, estimate, one_of, series_by
+
+MAPPINGS = {"column split": {"mapping": "column"}, "cyclic, p = 16": {"offset": 16}, "tiles 8 x 8": {"mapping": "tiles:8x8"}}
+
+
+def run(lab, scenes):
+    scene, size, frames = one_of(scenes), lab.size(128), 12
+    rows = []
+    for frame in range(frames):
+        cost = lab.costs(scene.turned(360 * frame / frames), size).trace
+        for name, options in MAPPINGS.items():
+            loads = raya.loads(cost, pes=size, **options)
+            rows.append({"turned by (degrees)": 360 * frame / frames, "mapping": name, "u": loads.max() / loads.mean() - 1})
+    rows = pd.DataFrame(rows)
+    means = {name: estimate(some["u"]).text() for name, some in rows.groupby("mapping", sort=False)}
+    return Page({"scene": scene.name, "size": size, "pes": size, "frames": frames},
+                [f"Mean u over the turn: {', '.join(f'{u} ({name})' for name, u in means.items())}."],
+                tables=[Table("my-study", "u of every frame", rows)],
+                plots=[Plot("my-study", "Imbalance over a turn", "turned by (degrees)", "u",
+                            series_by(rows, "mapping", "turned by (degrees)", "u"), log="y")])

@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""Compares the results of `raya study` with recorded ones:
+
+    compare_golden.py OUT GOLDEN [STUDY...]
+
+Every figure that is not a measured time must agree to 1 part in 10^9 (intervals: 10^6), every claim and verdict word
+for word. Prints what was compared; exit code 1 where something differs.
+"""
+import csv
+import json
+import math
+import re
+import sys
+from pathlib import Path
+
+FIGURES, INTERVALS = 1e-9, 1e-6
+# Columns that hold measured times, rates, or what follows from them; by file name, as regular expressions.
+MEASURED = {
+    r"accel(-growth|-scenes)?": r".*\(ms\)|.*\(ns\)|.*\(s\)|.*time.*|.*exponent.*|.*rays.*",
+}
+
+
+def rows_of(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))
+
+
+def same(ours, theirs, limit):
+    try:
+        a, b = float(ours), float(theirs)
+    except ValueError:
+        return ours == theirs
+    return a == b or math.isclose(a, b, rel_tol=limit, abs_tol=1e-12) or (math.isnan(a) and math.isnan(b))
+
+
+def is_measured(stem, column):
+    return any(re.fullmatch(file, stem) and re.fullmatch(columns, column) for file, columns in MEASURED.items())
+
+
+def compare_table(ours, theirs, stem):
+    """(figures compared, figures left out, differences)"""
+    if ours[0] != theirs[0]:
+        return 0, 0, [f"{stem}: columns {ours[0]} instead of {theirs[0]}"]
+    if len(ours) != len(theirs):
+        return 0, 0, [f"{stem}: {len(ours) - 1} rows instead of {len(theirs) - 1}"]
+    compared = left_out = 0
+    differences = []
+    for number, (a, b) in enumerate(zip(ours[1:], theirs[1:]), 1):
+        for column, x, y in zip(theirs[0], a, b):
+            if is_measured(stem, column):
+                left_out += 1
+                continue
+            compared += 1
+            if not same(x, y, INTERVALS if "+-" in column else FIGURES):
+                differences.append(f"{stem}, row {number}, {column}: {x} instead of {y}")
+    return compared, left_out, differences
+
+
+def main(out, golden, wanted):
+    compared = left_out = claims = 0
+    differences = []
+    recorded = json.loads((golden / "claims.json").read_text())
+    for study in wanted or sorted({claim["study"] for claim in recorded}):
+        if not (out / f"{study}.json").exists():
+            differences.append(f"{study}: no results")
+            continue
+        page = json.loads((out / f"{study}.json").read_text())
+        theirs = [c for c in recorded if c["study"] == study]
+        for ours, their in zip(page["claims"], theirs):
+            claims += 1
+            for member in ("paper", "place", "words", "verdict"):
+                if ours[member] != their[member]:
+                    differences.append(f"{study}: claim '{their['words']}': {member} '{ours[member]}'")
+        if len(page["claims"]) != len(theirs):
+            differences.append(f"{study}: {len(page['claims'])} claims instead of {len(theirs)}")
+    for path in sorted(golden.glob("*.csv")):
+        study = next((s for s in sorted(wanted, key=len, reverse=True) if path.stem == s or path.stem.startswith(s + "-")), None)
+        if wanted and study is None:
+            continue
+        if not (out / path.name).exists():
+            differences.append(f"{path.name}: no such file")
+            continue
+        figures, measured, found = compare_table(rows_of(out / path.name), rows_of(path), path.stem)
+        compared, left_out, differences = compared + figures, left_out + measured, differences + found
+    for line in differences:
+        print(line)
+    print(f"{compared} figures and {claims} claims compared, {left_out} measured ones left out, "
+          f"{len(differences)} differences")
+    return 1 if differences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3:]))

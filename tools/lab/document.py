@@ -1,0 +1,223 @@
+"""The files of studies: CSV, JSON, plots and Markdown of each, and one HTML document of all."""
+import base64
+import dataclasses
+import json
+import math
+import os
+import re
+import tempfile
+from collections import Counter
+from functools import partial
+from pathlib import Path
+
+import jinja2
+import numpy as np
+from markupsafe import Markup, escape
+from raya.lab import plots
+from raya.lab.page import shown
+from raya.lab.papers import REFERENCES
+from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED
+
+OPEN_ROWS, MOST_ROWS = 24, 400  # of a table that is shown unfolded, and that is shown at all
+
+ABOUT = {
+    "title": "The load laboratory",
+    "question": "What do the papers on two array machines that trace rays say, which of it is seen when their machines "
+                "are modelled again, and what lies beyond?",
+    "method": [
+        "Kohata & Ito 1993 divide the screen: 256 processors on a ring and a bus, the SPA, share the pixels by a cyclic "
+        "mapping. Yoshitani & Yamazaki, about 1995, divide space: 64 transputers on a torus hold a voxel each, and rays "
+        "travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids, with which raya's "
+        "are compared.",
+        "Both machines are models that run as OpenCL kernels. The image is the same, bit for bit, whatever machine and "
+        "mapping make it. Loads, packets and tests are counted where they happen; times are modelled from these counts "
+        "unless a page calls them measured.",
+        "A claim is what a paper says. It is reproduced or not by a rule over the figures next to it; it cannot be told "
+        "where the paper leaves out what decides it, or where our interval holds both answers.",
+        "A paper's figure that is marked as derived is arithmetic on printed ones. After +- stands the half width of a "
+        "95 % confidence interval by Student's t.",
+    ],
+}
+
+
+def write_whole(path, content):
+    """Writes a file that appears whole or not at all."""
+    data = content if isinstance(content, bytes) else content.encode()
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".raya-", suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(temporary, 0o666 & ~umask)
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def plain(value):
+    """A value as JSON has it: numpy's numbers as Python's, nan as null, inf as text."""
+    if dataclasses.is_dataclass(value):
+        return plain({f.name: getattr(value, f.name) for f in dataclasses.fields(value)})
+    if isinstance(value, dict):
+        return {key: plain(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [plain(one) for one in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else str(value)
+    return value
+
+
+def json_of(page):
+    tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": t.rows.values.tolist()}
+              for t in page.tables]
+    pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]
+    comparisons = [{**plain(c), "ratio": plain(ratio(c))} for c in page.comparisons]
+    drawn = [{**plain(p), "description": plots.description(p)} for p in page.plots]
+    members = {f.name: getattr(page, f.name) for f in dataclasses.fields(page) if f.name not in ("name", "words")}
+    return {"study": page.name, **plain({**members, "tables": tables, "pictures": pictures,
+                                         "comparisons": comparisons, "plots": drawn})}
+
+
+def ratio(comparison):
+    return comparison.ours / comparison.paper if comparison.paper else math.nan
+
+
+def with_unit(number, unit):
+    return f"{number} {unit}" if unit else number
+
+
+def cells_of_comparisons(page):
+    """The header and rows of the table that compares with papers; without papers, of the chief figures."""
+    def ours(c):
+        return with_unit(shown(c.ours) + (f" +- {c.half_width:.2g}" if c.half_width else ""), c.unit)
+
+    if all(c.paper is None for c in page.comparisons):
+        return [["", "ours", "remark"]] + [[c.what, ours(c), c.remark] for c in page.comparisons]
+    rows = [["", page.beside or "paper", "ours", "ours / theirs", "remark"]]
+    for c in page.comparisons:
+        paper = "-" if c.paper is None else with_unit(shown(c.paper), c.unit) + (" (derived)" if c.derived else "")
+        rows.append([c.what, paper, ours(c), f"{ratio(c):.3g}" if c.paper else "-", c.remark])
+    return rows
+
+
+def title_of_comparisons(page):
+    if all(c.paper is None for c in page.comparisons):
+        return "Chief figures"
+    return f"Compared with {page.beside or 'the papers'}"
+
+
+def cells_of_points(plot):
+    bars = any(any(s.half_widths) for s in plot.series)
+    rows = [["series", plot.x_label, plot.y_label] + ["+-"] * bars]
+    for s in plot.series:
+        half = s.half_widths or [math.nan] * len(s.x)
+        rows += [[s.label, shown(x), shown(y)] + [f"{h:.2g}"] * bars for x, y, h in zip(s.x, s.y, half)]
+    return rows
+
+
+def cells_of_table(table):
+    return [list(table.rows.columns)] + [[shown(cell) for cell in row] for row in table.rows.values.tolist()]
+
+
+def lines_of_run(page):
+    """How to repeat a page: what ran, and with which settings."""
+    lines = [(key, page.run[key]) for key in ("command", "version", "device") if page.run]
+    return lines + [(key, value if isinstance(value, str) else json.dumps(plain(value)))
+                    for key, value in page.settings.items()]
+
+
+def verdict_sentences(pages):
+    """A sentence on all claims, and where there are several papers one on each."""
+    claims = [claim for page in pages for claim in page.claims]
+    if not claims:
+        return ["No claim of a paper is judged here."]
+
+    def sentence(some, whose):
+        count = Counter(claim.verdict for claim in some)
+        is_are = ["is" if count[v] == 1 else "are" for v in (REPRODUCED, NOT_REPRODUCED)]
+        return (f"Of {len(some)} claim{'' if len(some) == 1 else 's'} {whose}, {count[REPRODUCED]} {is_are[0]} "
+                f"reproduced, {count[NOT_REPRODUCED]} {is_are[1]} not, and {count[UNDECIDED]} cannot be told.")
+
+    papers = list(dict.fromkeys(claim.paper for claim in claims))
+    if len(papers) == 1:
+        return [sentence(claims, f"of {papers[0]}")]
+    return [sentence(claims, f"of {len(papers)} papers")] + [
+        sentence([c for c in claims if c.paper == paper], f"of {paper}") for paper in papers]
+
+
+def claims_with(pages, verdict):
+    return [f'{c.paper}, {c.place}: "{c.words}" {c.why}' for page in pages for c in page.claims
+            if c.verdict == verdict]
+
+
+def prose(text):
+    """HTML of a sentence: `code`, and +- as a sign."""
+    return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
+
+
+def is_number(cell):
+    try:
+        float(re.split(r"[ ±]", cell.replace("+-", "±").strip())[0])
+    except ValueError:
+        return cell in ("-", "")
+    return True
+
+
+def classes_of(cells):
+    """n: a column of numbers; w: of sentences, which need width."""
+    columns = list(zip(*cells[1:])) or [()] * len(cells[0])
+    return ["n" if all(map(is_number, c)) else "w" if any(len(cell) > 60 for cell in c) else "" for c in columns]
+
+
+def inlined(svg):
+    """A drawing for HTML, whose colours follow the page's."""
+    return Markup(re.sub(r": #([0-9a-f]{6})", r": var(--plot-\1, #\1)", svg[svg.index("<svg"):]))
+
+
+def markdown_table(cells):
+    lines = ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in cells]
+    return "\n".join([lines[0], "|" + "---|" * len(cells[0])] + lines[1:])
+
+
+def environment():
+    made = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
+                              autoescape=jinja2.select_autoescape(["html.j2"]), lstrip_blocks=True,
+                              undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
+    made.filters.update(prose=prose, markdown_table=markdown_table, classes=classes_of)
+    made.globals.update(about=ABOUT, cells_of_comparisons=cells_of_comparisons, cells_of_points=cells_of_points,
+                        title_of_comparisons=title_of_comparisons, cells_of_table=cells_of_table, len=len,
+                        lines_of_run=lines_of_run, verdict_sentences=verdict_sentences, OPEN_ROWS=OPEN_ROWS,
+                        MOST_ROWS=MOST_ROWS, not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
+    return made
+
+
+def write_page(folder, page):
+    """Writes all files of one study; returns its drawings for the document, as HTML by name."""
+    drawings = {}
+    for table in page.tables:
+        write_whole(folder / f"{table.name}.csv", table.rows.to_csv(index=False, na_rep="-"))
+    for picture in page.pictures:
+        drawings[picture.name] = base64.b64encode(picture.png).decode()
+        write_whole(folder / f"{picture.name}.png", picture.png)
+    for plot in page.plots:
+        for kind, content in plots.files_of(plot).items():
+            write_whole(folder / f"{plot.name}.{kind}", content)
+            if kind == "svg":
+                drawings[plot.name] = inlined(content.decode())
+    write_whole(folder / f"{page.name}.json", json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n")
+    write_whole(folder / f"{page.name}.md", environment().get_template("page.md.j2").render(page=page))
+    return drawings
+
+
+def write_document(folder, pages, drawings, left_out=()):
+    """index.html of all pages, and of several index.md. `left_out`: sentences on studies that did not run."""
+    made = environment()
+    body = made.get_template("document.html.j2").render(pages=pages, drawings=drawings, left_out=left_out,
+                                                        references=REFERENCES)
+    write_whole(folder / "index.html", body)
+    if len(pages) > 1:
+        write_whole(folder / "index.md", made.get_template("index.md.j2").render(pages=pages, left_out=left_out))

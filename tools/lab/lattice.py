@@ -1,0 +1,21 @@
+"""The lattice of pixels that one PE owns under the cyclic mapping with a PE for each column: (p, 1) and (W, 0)."""
+
+
+def shortest_square(offset, side):
+    """The square of the length of its shortest vector, pixels."""
+    least = side * side
+    rows = 1
+    while rows * rows < least:
+        right = rows * offset % side
+        least = min(least, rows * rows + min(right, side - right) ** 2)
+        rows += 1
+    return least
+
+
+def shortest_vector(offset, side):
+    return shortest_square(offset, side) ** 0.5
+
+
+def shares_blocks(offset, side, n):
+    """Whether no PE owns two pixels of any n x n block."""
+    return n <= side and all(min(rows * offset % side, side - rows * offset % side) >= n for rows in range(1, n))

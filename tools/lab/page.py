@@ -1,0 +1,136 @@
+"""What a study has found, as plain data: from this its files and its part of the document are made."""
+from dataclasses import dataclass, field
+from typing import Optional
+
+import numpy as np
+import pandas as pd
+
+
+@dataclass
+class Table:
+    """Rows under columns; 'load (cycles)' names a column and its unit. A missing value is nan."""
+
+    name: str  # stem of its CSV
+    title: str
+    rows: pd.DataFrame  # or what makes one: a list of dicts
+    on_page: bool = True  # False: in the CSV alone, for long ones
+
+    def __post_init__(self):
+        self.rows = pd.DataFrame(self.rows)
+
+
+@dataclass
+class Series:
+    label: str
+    x: list
+    y: list
+    style: str = "line"  # line, points, steps, paper
+    half_widths: list = field(default_factory=list)  # of the 95 % intervals of y
+
+    def __post_init__(self):
+        self.x, self.y = ([float(value) for value in values] for values in (self.x, self.y))
+        self.half_widths = np.nan_to_num([float(half) for half in self.half_widths]).tolist()
+
+
+def series_by(rows, label, x, y, half=None, style="line"):
+    """A series of each value of the column `label`, in the order in which they first occur."""
+    return [Series(str(value), some[x], some[y], style, some[half] if half else [])
+            for value, some in rows.groupby(label, sort=False)]
+
+
+@dataclass
+class Plot:
+    name: str  # stem of its files
+    title: str
+    x_label: str
+    y_label: str
+    series: list
+    log: str = ""  # "x", "y", "xy"
+
+
+@dataclass
+class Picture:
+    name: str  # stem of its PNG
+    title: str
+    words: str  # what is seen, for those who do not see it
+    png: bytes
+
+
+@dataclass
+class Comparison:
+    """A figure of ours next to a paper's, where it has one."""
+
+    what: str
+    unit: str
+    paper: Optional[float]
+    ours: float
+    remark: str = ""
+    derived: bool = False  # the paper's is arithmetic on printed figures
+    half_width: Optional[float] = None
+
+
+@dataclass
+class Claim:
+    """What a paper says, and whether it was seen."""
+
+    paper: str
+    place: str
+    words: str
+    verdict: str
+    why: str
+
+
+@dataclass
+class Page:
+    settings: dict
+    findings: list = field(default_factory=list)  # sentences, the chief one first
+    comparisons: list = field(default_factory=list)
+    claims: list = field(default_factory=list)
+    tables: list = field(default_factory=list)
+    plots: list = field(default_factory=list)
+    news: list = field(default_factory=list)  # what no paper has
+    pictures: list = field(default_factory=list)
+    clock: str = ""  # by what the times on the page are counted
+    words: dict = field(default_factory=dict)  # for braces in the prose that no setting fills
+    beside: str = ""  # whose figures are compared
+    name: str = ""
+    title: str = ""
+    question: str = ""
+    method: list = field(default_factory=list)
+    run: dict = field(default_factory=dict)
+
+    def describe(self, name, prose):
+        """Title, question and method from a study's prose: a line, a paragraph, a list, filled from the settings."""
+        self.name = name
+        lines = [line for line in prose.format_map({**self.settings, **self.words}).splitlines() if line.strip()]
+        self.title, self.question = lines[0], ""
+        for line in lines[1:]:
+            if line.startswith("- "):
+                self.method.append(line[2:])
+            elif self.method:
+                self.method[-1] += " " + line.strip()
+            else:
+                self.question = f"{self.question} {line.strip()}".strip()
+        names = [t.name for t in self.tables] + [p.name for p in self.plots + self.pictures]
+        for kind in (self.tables, self.plots + self.pictures):
+            names = [one.name for one in kind]
+            if len(names) != len(set(names)):
+                raise ValueError(f"study {name}: two files have one name: {sorted(names)}")
+        return self
+
+    def table(self, name):
+        """The rows of a table."""
+        return next(t.rows for t in self.tables if t.name == name)
+
+
+def shown(value):
+    """A number as pages show it, in five digits."""
+    if isinstance(value, str):
+        return value
+    if value is None or (isinstance(value, float) and np.isnan(value)):
+        return "-"
+    if isinstance(value, (int, np.integer)):
+        return str(value)
+    if value == 0:
+        return "0"
+    return f"{value:.0f}" if 1e4 <= abs(value) < 1e15 else f"{value:.5g}"

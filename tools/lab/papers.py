@@ -1,0 +1,78 @@
+"""What papers printed, each figure with its place; [D] marks arithmetic on printed figures."""
+
+SPA = "Kohata & Ito 1993"
+TP = "Yoshitani & Yamazaki, about 1995"
+GRID = "Havran & Sixta 1999"
+DYNAMIC = "Heirich & Arvo 1998"
+
+# Kohata & Ito 1993.
+SIZE = PES = 256
+# Table 2: milliseconds of the scene of Fig. 6 on 256 PEs and on one; computing alone on a PC and a workstation.
+OBJECTS_MS, COMPUTE_MS, IMAGE_MS, DISPLAY_MS, TOTAL_MS = 2, 283, 140, 1130, 1555
+ONE_PE_COMPUTE_MS, ONE_PE_TOTAL_MS = 64_800, 66_072
+PC_MS, WORKSTATION_MS = 295_910, 28_800
+# Table 3: ray tracing and filtering, p = 0 and p = 16.
+TRACE_0_MS, TRACE_16_MS, FILTER_0_MS, FILTER_16_MS = 653, 283, 9, 19
+FILTERED_0_MS, FILTERED_16_MS = TRACE_0_MS + FILTER_0_MS, TRACE_16_MS + FILTER_16_MS
+# Table 4: supersampling, communication and computation, p = 0 and p = 16.
+EXCHANGE_0_MS, EXCHANGE_16_MS, SUPERSAMPLE_0_MS, SUPERSAMPLE_16_MS = 2, 12, 739, 407
+# [D] Table 3: what a rotation takes, and that filtering's arithmetic takes the same for every p, give p = 8.
+FILTER_ARITHMETIC_MS, FILTER_8_MS, EXCHANGE_8_MS = 7, 14, 7
+# [D] Table 4, if its computation is the supersampling alone.
+RECOMPUTED_LEAST, RECOMPUTED_MOST, MEAN_SUPERSAMPLE_MS = 0.16, 0.18, 364
+# [D] Tables 2 and 3, with the digits that the rounding of 653, 283 and 64,800 ms leaves them.
+SPEEDUP_16 = 229  # stands in the abstracts
+MEAN_MS = ONE_PE_COMPUTE_MS / PES  # mean load
+SPEEDUP_0 = 99.2
+IMBALANCE_0, IMBALANCE_16 = 1.58, 0.118  # u(0), u(16); Figs 7 and 8 print no u
+IMBALANCE_16_ROUNDING = "the paper's: 0.115 .. 0.121 by the rounding of its times"
+EFFICIENCY_0, EFFICIENCY_16 = 0.388, 0.895
+CAP_RATIO = 3.86  # next to Fig. 9: CAP, 256 PEs over 64
+PIXEL_MACHINE_SPEEDUP = 60  # next to Fig. 9: 64 nodes, "60 or more"
+EXCHANGE_SETUP_MS = 1.375  # [D] Table 4: 2 - 2 x 0.3125 = 12 - 34 x 0.3125
+ROTATION_MS = 0.3125  # [D] Tables 3 and 4: 10 ms for 32 rotations
+
+# Yoshitani & Yamazaki, about 1995.
+RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, next to data for the search and of the object
+FEW_DIVISIONS, MANY_DIVISIONS = 32, 1024  # Fig. 3: 1024 objects on one machine
+FEW_DIVISIONS_S, MANY_DIVISIONS_S = 313, 60
+DIVISIONS_FALL = FEW_DIVISIONS_S / MANY_DIVISIONS_S  # [D]
+TESTS_FALL = 5  # tests fall "to about 1/5"
+
+# Havran & Sixta 1999: a uniform grid with 3D-DDA on SPD's scenes: divisions -> tests and steps a ray.
+UNIFORM_GRIDS = {
+    ("balls", (46, 46, 3)): (358.66, 5.69),
+    ("balls", (103, 103, 7)): (72.54, 12.40),
+    ("lattice", (20, 20, 20)): (20.67, 5.09),
+    ("lattice", (44, 44, 44)): (9.26, 10.56),
+}
+
+REFERENCES = [
+    "Milton Abramowitz, Irene A. Stegun (eds.): Handbook of Mathematical Functions. National Bureau of Standards, "
+    "Applied Mathematics Series 55, 1964.",
+    "John Amanatides, Andrew Woo: A Fast Voxel Traversal Algorithm for Ray Tracing. Eurographics '87, pp. 3-10, 1987.",
+    "Akira Fujimoto, Takayuki Tanaka, Kansei Iwata: ARTS: Accelerated Ray-Tracing System. IEEE Computer Graphics and "
+    "Applications 6 (4), pp. 16-26, 1986.",
+    "Eric Haines: A Proposal for Standard Graphics Environments. IEEE Computer Graphics and Applications 7 (11), "
+    "pp. 3-5, 1987. (The Standard Procedural Databases, SPD.)",
+    "Vlastimil Havran, Filip Sixta: Comparison of Hierarchical Grids. Ray Tracing News 12 (1), 1999.",
+    "Alan Heirich, James Arvo: A Competitive Analysis of Load Balancing Strategies for Parallel Ray Tracing. The "
+    "Journal of Supercomputing 12, pp. 57-68, 1998.",
+    "SGS-Thomson Microelectronics: IMS T805, 32-bit floating-point transputer. Data sheet, 1996.",
+    "Kohata, Ito: Parallel Computation of Ray Tracing on a One-dimensional DSP Array. IPSJ Journal (Information "
+    "Processing Society of Japan), 1993, in Japanese.",
+    "Michael Potmesil, Eric M. Hoffert: The Pixel Machine: A Parallel Image Computer. Computer Graphics 23 (3) "
+    "(SIGGRAPH '89), pp. 69-78, 1989.",
+    "Henri Casanova, Arnaud Giersch, Arnaud Legrand, Martin Quinson, Frédéric Suter: Versatile, Scalable, and "
+    "Accurate Simulation of Distributed Applications and Platforms. Journal of Parallel and Distributed Computing 74 "
+    "(10), pp. 2899-2917, 2014.",
+    "Ingo Wald, Sven Woop, Carsten Benthin, Gregory S. Johnson, Manfred Ernst: Embree: A Kernel Framework for "
+    "Efficient CPU Ray Tracing. ACM Transactions on Graphics 33 (4), 2014.",
+    "Yoshitani, Yamazaki: Realisation and evaluation of space-partition parallel ray tracing. National convention of "
+    "the IPSJ, 4L-6, about 1995, in Japanese.",
+]
+
+
+def printed(value, scene, size):
+    """A paper's figure where a study is made as the paper made it: of the scene of its kind, at its size; else None."""
+    return value if scene == "centre" and size == SIZE else None

@@ -1,0 +1,209 @@
+"""Draws the plots of a page as SVG and PNG: the same plot gives the same bytes under the same matplotlib."""
+import io
+import math
+import re
+import textwrap
+from html import escape
+
+import matplotlib
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+from raya.lab.page import shown
+
+# M. Okabe and K. Ito's colours, which colour-blind readers can tell apart; without yellow, which is faint on white.
+COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
+PAPER_COLOURS = ["#000000", "#8b1a1a", "#1a3a8b", "#1a5e1a"]
+DASHES = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (3, 1.5, 1, 1.5, 1, 1.5))]
+MARKERS = ["o", "s", "^", "v", "P", "X", "d", "<", ">"]
+FEW = 40  # points of a line that are marked one by one
+HALO = [withStroke(linewidth=3, foreground="white")]
+
+STYLE = {
+    "axes.axisbelow": True, "axes.edgecolor": "#555555", "axes.formatter.use_mathtext": True,
+    "axes.formatter.useoffset": False, "axes.formatter.limits": (-4, 6), "axes.grid": True, "axes.labelsize": 12,
+    "axes.spines.right": False, "axes.spines.top": False, "axes.titlelocation": "left", "axes.titlesize": 13,
+    "axes.titleweight": "bold", "axes.titlepad": 12, "font.size": 11, "grid.color": "#dddddd", "grid.linewidth": 0.7,
+    "legend.fontsize": 11, "legend.frameon": False, "svg.fonttype": "none", "svg.hashsalt": "raya",
+    "xtick.labelsize": 11, "ytick.labelsize": 11,
+}
+
+
+def plain(text):
+    """Text in which a dollar is a dollar and no formula."""
+    return str(text).replace("$", r"\$")
+
+
+def look_of(style, number, count):
+    """How the number-th series of its kind is drawn: no two are alike in colour or in shape."""
+    colour, dash, marker = (some[number % len(some)] for some in (COLOURS, DASHES, MARKERS))
+    if style in ("line", "steps"):
+        look = {"color": colour, "linestyle": dash, "linewidth": 1.7 if count <= 100 else 1.3}
+        if style == "steps":
+            return {**look, "drawstyle": "steps-mid"}
+        return {**look, "marker": marker if count <= FEW else "", "markersize": 5}
+    if style == "points":
+        return {"color": colour, "linestyle": "", "marker": marker, "markersize": 6 if count <= 100 else 3}
+    return {"color": PAPER_COLOURS[number % len(PAPER_COLOURS)], "linestyle": "", "marker": "D", "markersize": 11,
+            "markerfacecolor": "none", "markeredgewidth": 2, "zorder": 5}
+
+
+def is_shown(plot, x, y):
+    """Infinite points have no place on a plot, nor have those at or below zero on a logarithmic axis."""
+    return math.isfinite(x + y) and (x > 0 or "x" not in plot.log) and (y > 0 or "y" not in plot.log)
+
+
+def draw_intervals(axes, plot, series, colour):
+    """As bars; as a band along a line of many points. On a logarithmic axis what reaches down to 0 ends in the plot."""
+    points = [(x, y, h) for x, y, h in zip(series.x, series.y, series.half_widths) if is_shown(plot, x, y)]
+    if not points:
+        return
+    x, y, half = (np.array(some) for some in zip(*points))
+    positive = np.concatenate([y, y - half])
+    floor = positive[positive > 0].min() / 2 if "y" in plot.log else -math.inf
+    low = np.maximum(y - half, floor)
+    if len(x) > FEW:
+        axes.fill_between(x, low, y + half, color=colour, alpha=0.25, linewidth=0)
+    else:
+        axes.errorbar(x, y, yerr=[y - low, half], fmt="none", ecolor=colour, elinewidth=1.2, capsize=3)
+
+
+def draw_series(axes, plot):
+    """Returns the lines that stand for the series in the legend."""
+    lines, kinds = [], {True: 0, False: 0}
+    for series in plot.series:
+        paper = series.style == "paper"
+        look = look_of(series.style, kinds[paper], len(series.x))
+        kinds[paper] += 1
+        y = [value if math.isfinite(value) else math.nan for value in series.y]
+        lines += axes.plot(series.x, y, **look)
+        if any(series.half_widths):
+            draw_intervals(axes, plot, series, look["color"])
+    return lines
+
+
+def name_paper_points(axes, plot):
+    """Writes the paper's figures next to their points, where they are few."""
+    papers = [s for s in plot.series if s.style == "paper"]
+    if sum(len(s.x) for s in papers) > 8:
+        return
+    for series in papers:
+        for x, y in zip(series.x, series.y):
+            if is_shown(plot, x, y):
+                right = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))[0] > 0.85
+                axes.annotate(f"{y:.3g}" if y < 1000 else f"{y:.0f}", (x, y), xytext=(-11 if right else 11, 5),
+                              textcoords="offset points", ha="right" if right else "left", zorder=6,
+                              path_effects=HALO)
+
+
+def power_of_ten(value, _):
+    if value <= 0:
+        return ""
+    exponent = math.floor(math.log10(value) + 1e-9)
+    digit = round(value / 10**exponent)
+    return f"$10^{{{exponent}}}$" if digit == 1 else rf"${digit}\times10^{{{exponent}}}$"
+
+
+def mark_powers_of_two(axis, values):
+    """Marks at most nine of them, the lowest first."""
+    first, last = (math.frexp(value)[1] - 1 for value in (min(values), max(values)))
+    axis.set_major_locator(FixedLocator([2.0**n for n in range(first, last + 1, (last - first) // 9 + 1)]))
+    axis.set_minor_locator(NullLocator())
+    as_power = last > 14 or first < -3
+    axis.set_major_formatter(lambda value, _: f"$2^{{{round(math.log2(value))}}}$" if as_power else f"{value:g}")
+
+
+def mark_powers_of_ten(axis, values):
+    """And 2 and 5 times each where there are few of them."""
+    low, high = (min(values), max(values)) if values else (1, 10)
+    axis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5) if high / low < 300 else (1,), numticks=12))
+    axis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter((lambda value, _: f"{value:g}") if 1e-4 < low <= high < 1e5 else power_of_ten)
+
+
+def set_log_axis(axes, name, values):
+    by_two = len(set(values)) > 2 and all(math.frexp(value)[0] == 0.5 for value in values)
+    (axes.set_xscale if name == "x" else axes.set_yscale)("log", base=2 if by_two else 10, nonpositive="mask")
+    if not values:  # then autoscaling has nothing to go by
+        (axes.set_xlim if name == "x" else axes.set_ylim)(1, 10)
+    (mark_powers_of_two if by_two else mark_powers_of_ten)(axes.xaxis if name == "x" else axes.yaxis, values)
+
+
+def set_axes(axes, plot, points):
+    """Scales, labels, and a zero on the y axis where the figures reach down towards it."""
+    axes.set_xlabel(plain(plot.x_label))
+    axes.set_ylabel(plain(plot.y_label))
+    x, y = zip(*points) if points else ((), ())
+    for name, values in (("x", x), ("y", y)):
+        if name in plot.log:
+            set_log_axis(axes, name, values)
+    if y and "y" not in plot.log and 0 <= min(y) <= max(y) / 2:
+        axes.set_ylim(bottom=0)
+
+
+def draw(plot):
+    labels = [textwrap.fill(plain(series.label), 24) for series in plot.series]
+    lines = sum(label.count("\n") + 1 for label in labels)
+    figure = Figure(figsize=(9, max(5.2, 0.24 * lines)), layout="constrained")  # inches: 900 pixels wide at 100 an inch
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    handles = draw_series(axes, plot)
+    points = [at for series in plot.series for at in zip(series.x, series.y)]
+    inside = [at for at in points if is_shown(plot, *at)]
+    set_axes(axes, plot, inside)
+    axes.set_title(textwrap.fill(plain(plot.title), 76))
+    if any(labels):  # on the right of the data, never over it; matplotlib leaves out what begins with "_"
+        axes.legend(handles, [" " + text if text.startswith("_") else text for text in labels], loc="upper left",
+                    bbox_to_anchor=(1.01, 1), borderaxespad=0, handlelength=2.6)
+    hidden = len(points) - len(inside)
+    if hidden:
+        figure.text(0.01, 0.01, f"{hidden} point{'s' if hidden > 1 else ''} without a place on these axes "
+                    "(infinite, or not above 0 on a logarithmic one)", fontsize=9, color="#555555", va="bottom")
+    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08, rect=(0, 0.035, 1, 0.965) if hidden else (0, 0, 1, 1))
+    figure.draw_without_rendering()  # fixes the layout, which stays: SVG and PNG are alike
+    figure.set_layout_engine("none")
+    name_paper_points(axes, plot)
+    return figure
+
+
+def range_of(values):
+    finite = [value for value in values if math.isfinite(value)]
+    if not finite:
+        return "without a finite value"
+    low, high = min(finite), max(finite)
+    return f"at {shown(low)}" if low == high else f"from {shown(low)} to {shown(high)}"
+
+
+def description(plot):
+    """What the plot shows, for those who do not see it."""
+    def axis(label, name, values):
+        return f"{label}{', logarithmic' if name in plot.log else ''}, {range_of(values)}"
+
+    series = "; ".join(f"{s.label}: {len(s.y)} point{'' if len(s.y) == 1 else 's'}, {range_of(s.y)}"
+                       f"{', with 95 % intervals' if any(s.half_widths) else ''}" for s in plot.series)
+    return (f"Across: {axis(plot.x_label, 'x', [x for s in plot.series for x in s.x])}. "
+            f"Up: {axis(plot.y_label, 'y', [y for s in plot.series for y in s.y])}. Series: {series}.")
+
+
+def described(svg, plot):
+    """The drawing with what it shows in words, and with names that no other drawing on a page has."""
+    name = f"plot-{plot.name}"
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", svg)
+    svg = svg.replace("*{stroke", f"#{name} *{{stroke")  # a style for all elements is for those of the drawing
+    svg = svg.replace("<svg ", f'<svg id="{name}" role="img" aria-labelledby="{name}-title" '
+                      f'aria-describedby="{name}-desc" ', 1)
+    head = svg.index(">", svg.index("<svg ")) + 1
+    return (f'{svg[:head]}\n<title id="{name}-title">{escape(plot.title)}</title>\n'
+            f'<desc id="{name}-desc">{escape(description(plot))}</desc>{svg[head:]}')
+
+
+def files_of(plot):
+    """{'svg': bytes, 'png': bytes}"""
+    with matplotlib.rc_context(STYLE):
+        figure, svg, png = draw(plot), io.BytesIO(), io.BytesIO()
+        figure.savefig(svg, format="svg", metadata={"Date": None})
+        figure.savefig(png, format="png", dpi=160, metadata={"Software": None})
+    return {"svg": described(svg.getvalue().decode(), plot).encode(), "png": png.getvalue()}

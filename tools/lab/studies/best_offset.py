@@ -1,0 +1,174 @@
+"""The best offset for a scene
+
+Which offset of the cyclic mapping makes this image soonest, communication in the balance?
+
+- For every offset: the busiest PE's modelled cycles in the first pass and in supersampling, the arithmetic between
+  neighbours, and the rotations that bring the neighbours by the shortest route, on the SPA's rates. Broadcast and image
+  transfer take the same for every offset and are left out.
+- A PE for each column, 256 PEs and 64; fold cyclic; sqrt(P) is rounded. PEs have memory for the shares that go round,
+  which the SPA's have only for small ones.
+- A scene is rendered at its own size, if that is square, and smaller where its objects would make that take minutes;
+  --size overrides. Of equal offsets the smallest is named.
+- What holds for the scene and not for one picture of it follows from {views} random views, as in Fig. 8 (fewer where
+  there are many objects): offsets are chosen by the views of odd seeds and judged in those of even seeds, compared in
+  the same view, with intervals of 95 %.
+- That 0..sqrt(P) are enough is reproduced where for all numbers of PEs and all ways of anti-aliasing together the best
+  offset of them takes at most {rule} % longer than the best of all; it is not reproduced where it takes longer than
+  that for one of them. That p = n^2 is p = 0 is reproduced where both take the same in every picture.
+"""
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, papers, study, verdict
+from raya.lab.laboratory import format_for
+from raya.lab.spa import CLOCK, FACTOR, FACTORS, offset_times, usual_size
+
+VIEWS, ENOUGH = 40, 1  # ENOUGH, %: ours; what an offset may lose and still be enough
+METHODS = ("none", "filter", "supersample")
+
+
+class Choice:
+    """One scene, one number of PEs and one way of anti-aliasing."""
+
+    def __init__(self, scene, size, pes, antialias, ensemble):
+        self.scene, self.size, self.pes, self.antialias = scene.name, size, pes, antialias
+        self.root = round(pes**0.5) % size
+        self.times = offset_times(ensemble.picture, pes, antialias)
+        ms = np.array([offset_times(view, pes, antialias)["total_ms"] for view in ensemble.views])  # [view, offset]
+        self.chosen_by, self.judged_by = ms[0::2], ms[1::2]  # odd and even seeds
+        total = self.times["total_ms"]
+        self.best, self.best_near = (self.times.loc[some.idxmin()] for some in (total, total[:self.root + 1]))
+        sums = self.chosen_by.sum(0)
+        self.chosen, self.chosen_near = int(sums.argmin()), int(sums[:self.root + 1].argmin())
+        # The best offset, were computing so many times as dear.
+        self.factors = ", ".join(dict.fromkeys(
+            str((self.times["ring_ms"] + f / FACTOR * (total - self.times["ring_ms"])).idxmin()) for f in FACTORS))
+
+    method = property(lambda c: "without anti-aliasing" if c.antialias == "none" else f"with --antialias {c.antialias}")
+
+    def time_of(self, offset):
+        return estimate(self.judged_by[:, offset])
+
+    def longer(self, offset, confidence=0.95):
+        """By how many % longer an offset takes than the chosen one, in the views by which nothing was chosen."""
+        return estimate(100 * (self.judged_by[:, offset] / self.judged_by[:, self.chosen] - 1), confidence)
+
+    def loss(self, ms):
+        return 100 * (ms / self.best["total_ms"] - 1) if self.best["total_ms"] > 0 else 0
+
+
+def choices_of(lab, scene):
+    size = lab.size(usual_size(scene))
+    ensemble = lab.ensemble(scene, size, "supersample", VIEWS)
+    numbers = [size] + [pes for pes in (256, 64) if pes != size and pes <= size * size]
+    return [Choice(scene, size, pes, method, ensemble) for pes in numbers for method in METHODS]
+
+
+@study("best-offset", "The best offset for your scene, communication in the balance")
+def best_offset(lab, scenes):
+    some = scenes or [raya.example("centre")]
+    by_scene = [choices_of(lab, scene) for scene in some]
+    every = [choice for choices in by_scene for choice in choices]
+    first = by_scene[0]
+    settings = {"scenes": [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene),
+                            "fold": "cyclic"} for choices, scene in zip(by_scene, some)],
+                "factor": FACTOR, "views": VIEWS, "rule": ENOUGH}
+    return Page(settings,
+                [*map(chief_finding, by_scene), *map(views_finding, every), *map(choice_finding, every)],
+                [Comparison(f"best p, {c.pes} PEs, {c.antialias}", "", None, int(c.best["offset"]),
+                            f"u of the first pass {c.best['imbalance']:.3f}; sqrt(P), Kohata & Ito's, is p = {c.root}")
+                 for c in first],
+                [claim_of_enough(first), claim_of_square(first)], tables_of(every),
+                [plot for number, choices in enumerate(by_scene, 1) for plot in plots_of(choices, number)],
+                ["Kohata & Ito weigh balance and communication in words. Here is the offset that makes an image soonest, "
+                 "for each number of PEs and each way of anti-aliasing, and how the clock's uncertainty moves it."],
+                clock=CLOCK)
+
+
+def chief_finding(choices):
+    first = choices[0]
+    answer = ", ".join(f"--offset {c.best['offset']:.0f} {c.method}" for c in choices if c.pes == first.pes)
+    return f"Use {answer}: {first.scene} at {first.size} x {first.size} pixels on {first.pes} PEs."
+
+
+def views_finding(c):
+    def longer(offset):
+        return c.longer(offset).text(1)
+
+    picture = int(c.best["offset"])
+    return (f"{c.scene}, {c.pes} PEs, {c.method}: of {len(c.chosen_by) + len(c.judged_by)} views one half chooses p = "
+            f"{c.chosen}; it takes {c.time_of(c.chosen).text(1)} ms in the other half. There the best of 0..sqrt(P), p = "
+            f"{c.chosen_near}, takes {longer(c.chosen_near)} % longer, p = {c.root} {longer(c.root)} %, p = 0 {longer(0)} "
+            f"%, and p = {picture}, the best for the scene's own picture, {longer(picture)} %.")
+
+
+def choice_finding(c):
+    total, root, zero = c.best["total_ms"], c.times["total_ms"][c.root], c.times["total_ms"][0]
+    near = (f"no offset beyond sqrt(P) = {c.root} is better" if c.best_near["offset"] == c.best["offset"] else
+            f"the best of 0..sqrt(P) is p = {c.best_near['offset']:.0f}, {c.loss(c.best_near['total_ms']):.1f} % slower")
+    of_root = "" if c.root == c.best["offset"] else f"p = {c.root} takes {c.loss(root):.1f} % longer, "
+    ring = 100 * c.best["ring_ms"] / total if total > 0 else 0
+    return (f"{c.scene}, {c.pes} PEs, {c.method}: p = {c.best['offset']:.0f} takes {total:.1f} ms, {ring:.1f} % of it on "
+            f"the ring, u of the first pass {c.best['imbalance']:.3f}; {near}; {of_root}p = 0 takes {c.loss(zero):.1f} % "
+            f"longer; the best for factors of 1 to 8: p = {c.factors}.")
+
+
+def claim_of_enough(choices):
+    near = [c.longer(c.chosen_near, each_of(len(choices))) for c in choices]
+    more, none = sum(e.low > ENOUGH for e in near), sum(e.high <= ENOUGH for e in near)
+    return Claim(papers.SPA, "section on the cyclic mapping",
+                 "Offsets of 0..sqrt(P) are enough, communication with neighbours considered.",
+                 verdict(none == len(near), more > 0),
+                 f"In {none} of {len(near)} cases (numbers of PEs and ways of anti-aliasing) the best of 0..sqrt(P) takes "
+                 f"at most {ENOUGH} % longer than the best of all with certainty, in {more} longer than that.")
+
+
+def claim_of_square(choices):
+    cases = equal = 0
+    for c in choices:
+        square = c.root * c.root
+        if square == c.pes and square < len(c.times):
+            ms = np.concatenate([[c.times["total_ms"]], c.chosen_by, c.judged_by])
+            cases, equal = cases + len(ms), equal + (ms[:, square] == ms[:, 0]).sum()
+    return Claim(papers.SPA, "section on the cyclic mapping", "On n x n PEs p = n^2 is the same as p = 0.",
+                 verdict(cases > 0 and equal == cases, equal < cases),
+                 f"Offset n^2 and offset 0 take the same in {equal} of {cases} cases (pictures and ways of anti-aliasing) "
+                 "on those numbers n x n of PEs for which the image has an offset of n^2.")
+
+
+def tables_of(every):
+    views, best, offsets = [], [], []
+    for c in every:
+        head = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}
+        time, near, root, zero = (c.time_of(c.chosen), c.longer(c.chosen_near), c.longer(c.root), c.longer(0))
+        views.append({**head, "best p": c.chosen, "time (ms)": time.mean, "time, +- (ms)": time.half,
+                      "best p of 0..sqrt(P)": c.chosen_near, "it takes longer (%)": near.mean, "it, +- (%)": near.half,
+                      "p = sqrt(P) takes longer (%)": root.mean, "p = sqrt(P), +- (%)": root.half,
+                      "p = 0 takes longer (%)": zero.mean, "p = 0, +- (%)": zero.half})
+        best.append({"scene": c.scene, "size": c.size, "PEs": c.pes, "anti-aliasing": c.antialias,
+                     "best p": int(c.best["offset"]), "best p, factors 1 to 8": c.factors,
+                     "time (ms)": c.best["total_ms"], "of it ring (ms)": c.best["ring_ms"],
+                     "u, first pass": c.best["imbalance"], "best p of 0..sqrt(P)": int(c.best_near["offset"]),
+                     "its time (ms)": c.best_near["total_ms"], "its u": c.best_near["imbalance"],
+                     "p = sqrt(P) (ms)": c.times["total_ms"][c.root], "p = 0 (ms)": c.times["total_ms"][0]})
+        t = c.times
+        offsets.append(pd.DataFrame({**head, "p": t["offset"], "u, first pass": t["imbalance"],
+                                     "first pass (ms)": t["trace_ms"], "neighbours' arithmetic (ms)": t["smooth_ms"],
+                                     "supersampling (ms)": t["supersample_ms"], "rotations": t["rotations"],
+                                     "ring (ms)": t["ring_ms"], "total (ms)": t["total_ms"]}))
+    return [Table("best-offset-views", "Offsets chosen by one half of the views, in the other half", views),
+            Table("best-offset", "Best offsets, modelled", best),
+            Table("best-offset-all", "Every offset", pd.concat(offsets, ignore_index=True), on_page=False)]
+
+
+def plots_of(choices, number):
+    """A plot for each number of PEs, a line for each way of anti-aliasing, its best offset marked."""
+    for pes in dict.fromkeys(c.pes for c in choices):
+        series = []
+        for c in (c for c in choices if c.pes == pes):
+            series += [Series("no anti-aliasing" if c.antialias == "none" else c.antialias, c.times["offset"],
+                              c.times["total_ms"]),
+                       Series(f"its best: p = {c.best['offset']:.0f}", [c.best["offset"]], [c.best["total_ms"]],
+                              "points")]
+        yield Plot(f"best-offset-{number}-{pes}pes", f"{c.scene} at {c.size} x {c.size} on {pes} PEs",
+                   "offset p (pixels)", "computing and rotations (modelled ms)", series, "y")

@@ -1,0 +1,103 @@
+"""Number formats against the double-precision reference
+
+How far is an image in a reduced format from the exact one, and what does the format cost?
+
+- {size} x {size} pixels, rays through pixel centres, {bounces} bounces, machine {machine} with {pes} PEs at offset
+  {offset}. Each image is compared with the double-precision reference on values clamped to 0..1.
+- Formats: `eXmY` has X exponent and Y fraction bits and rounds to nearest, with `t` it truncates; `e6m15` is `spa22`.
+- Times are measured on {device}, {lanes} lanes: the minimum of {samples} renders of each format, taken in turn.
+"""
+import re
+
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import Page, Plot, Table, series_by, study, study_scenes
+
+REDUCED = [name + more for name in ("e8m21", "e8m18", "e8m15", "e7m15", "e6m15", "e6m14", "e6m13") for more in ("", "t")]
+STEP, SAMPLES = 1 / 255, 5  # what a shown image can show: one step of 8 bits
+GRANDE = next(m for m in raya.machines() if m["name"] == "grande")
+
+
+def bits_of(form):
+    """(exponent bits, fraction bits, rounding)"""
+    if form == "fp32":
+        return 8, 23, "nearest"
+    exponent, fraction, cut = re.fullmatch(r"e(\d+)m(\d+)(t?)", form).groups()
+    return int(exponent), int(fraction), "truncate" if cut else "nearest"
+
+
+def difference(expected, image):
+    """PSNR (dB, peak 1), largest error and pixels with a channel off by more than STEP, of values clamped to 0..1; a
+    value that is not finite is infinitely far."""
+    finite = np.isfinite(expected) & np.isfinite(image)
+    off = np.where(finite, np.abs(np.clip(expected, 0, 1) - np.clip(image.astype(float), 0, 1)), np.inf)
+    with np.errstate(divide="ignore"):
+        return {"psnr_db": -10 * np.log10((off**2).mean()), "largest_error": off.max(),
+                "pixels_over": int((off.max(-1) > STEP).sum()), "share_over": (off.max(-1) > STEP).mean()}
+
+
+def rows_of(lab, scene, size):
+    expected = raya.reference(scene, size, GRANDE["bounces"])
+    options = dict(machine="grande", size=size, pes=size, offset=16 % size, accel="none")
+    rows = {}
+    for sample in range(SAMPLES):
+        for form in ["fp32", *REDUCED]:
+            result = lab.render(scene, format=form, **options)
+            if sample == 0:
+                exponent, fraction, rounding = bits_of(form)
+                rows[form] = {"scene": scene.name, "format": form, "exponent_bits": exponent, "fraction_bits": fraction,
+                              "rounding": rounding, **difference(expected, result.image), "image_hash": result.hash,
+                              "measured_kernel_s": np.inf}
+            rows[form]["measured_kernel_s"] = min(rows[form]["measured_kernel_s"], result.device_s)
+    rows = pd.DataFrame(rows.values())
+    rows["measured_ratio_to_fp32"] = rows["measured_kernel_s"] / rows["measured_kernel_s"][0]
+    return rows, result.report["device"]["lanes"]
+
+
+@study("formats", "PSNR, errors and time of fp32 and the reduced number formats against the double-precision reference")
+def formats(lab, scenes):
+    size = lab.size(256)
+    by_scene, lanes = zip(*(rows_of(lab, scene, size) for scene in scenes or study_scenes()))
+    rows = pd.concat(by_scene, ignore_index=True)
+    overview = []
+    for form, some in rows.groupby("format", sort=False):
+        worst = some.loc[some["psnr_db"].idxmin()]
+        ratio = some["measured_ratio_to_fp32"]
+        overview.append({"format": form, "lowest PSNR (dB)": worst["psnr_db"], "of scene": worst["scene"],
+                         "largest error": some["largest_error"].max(),
+                         "most off by > 1/255 (%)": 100 * some["share_over"].max(),
+                         "time / fp32, least (measured)": ratio.min(), "time / fp32, largest (measured)": ratio.max()})
+    nearest = rows[rows["rounding"] == "nearest"].assign(bits=lambda r: r["fraction_bits"])
+    return Page({"size": size, "machine": "grande", "pes": size, "offset": 16 % size, "bounces": GRANDE["bounces"],
+                 "samples": SAMPLES, "lanes": lanes[0], "device": lab.session.device["name"]}, findings_of(rows),
+                tables=[Table("formats-overview", "All scenes", overview),
+                        Table("formats", "Each scene and format", rows, on_page=False)],
+                plots=[Plot("formats", "PSNR against fraction bits, rounding to nearest", "fraction bits", "PSNR (dB)",
+                            series_by(nearest[nearest["bits"] < 23].sort_values("bits", kind="stable"), "scene", "bits",
+                                      "psnr_db", style="points"))])
+
+
+def psnr_of(rows, form):
+    return rows[rows["format"] == form].set_index("scene")["psnr_db"]
+
+
+def spread(gains):
+    return f"{gains.mean():+.1f} dB on average ({gains.min():+.1f} to {gains.max():+.1f})"
+
+
+def findings_of(rows):
+    spa, fp32 = (rows[rows["format"] == form] for form in ("e6m15", "fp32"))
+
+    def text(some, column, factor=1, digits=1):
+        return f"{factor * some[column].min():.{digits}f} to {factor * some[column].max():.{digits}f}"
+
+    gains = pd.concat([psnr_of(rows, form) - psnr_of(rows, form + "t") for form in REDUCED if not form.endswith("t")])
+    changes = [f"From {a} to {b} the PSNR changes by {spread(psnr_of(rows, b) - psnr_of(rows, a))}."
+               for a, b in (("e6m13", "e6m15"), ("e8m15", "e8m21"), ("e6m15", "e8m15"))]
+    return [f"spa22 (e6m15) has a PSNR of {text(spa, 'psnr_db')} dB, fp32 one of {text(fp32, 'psnr_db')} dB; "
+            f"{text(spa, 'share_over', 100, 2)} % of its pixels are off by more than 1/255, "
+            f"{text(fp32, 'share_over', 100, 2)} % of fp32's; it takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} times "
+            "fp32's kernel time (measured).",
+            f"Rounding to nearest has a higher PSNR than truncation in {(gains > 0).sum()} of {len(gains)} pairs of the same "
+            f"format and scene: {spread(gains)}.", *changes]

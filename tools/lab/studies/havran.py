@@ -1,0 +1,88 @@
+"""Tests and steps a ray in uniform grids, beside Havran & Sixta 1999
+
+Does our grid do what others' grids do on the same scenes?
+
+- One PE of grande in fp32, {size} x {size} rays through pixel corners{spd}, tree depth {depth} with the eye ray as 1, as
+  SPD has it. The grid cuts the box of the whole scene.
+- A ray: every eye, reflected, refracted and shadow ray, whether it meets the box or not. Tests: with spheres, polygons
+  and cylinders, of any ray. Steps: voxels that rays enter, the first one among them.
+- Where ours may differ: no mailbox, so that an object in several voxels on a ray's way is tested in each; a shadow ray
+  ends at the first object that is found to hide the light; objects are registered with a margin for rounding. What
+  Havran & Sixta do in each of these, and whether they count the first voxel, is not known to us.
+"""
+import pandas as pd
+import raya
+from raya.lab import Comparison, Page, Plot, Series, Table, papers, series_by, study
+from raya.lab.grid import run_grid
+from raya.lab.torus import sides_text
+
+BOUNCES, SPD_SIZE = 4, 513  # the eye ray is depth 1 of 5
+
+
+def grids_for(name):
+    """Those published for the scene, or cubes as fine as those for lattice."""
+    known = [grid for scene, grid in papers.UNIFORM_GRIDS if scene == name]
+    return known or [(20, 20, 20), (44, 44, 44)]
+
+
+@study("havran", "Intersection tests and steps a ray in uniform grids, balls and lattice")
+def havran(lab, scenes):
+    size = lab.size(257)  # every other corner of SPD's 513
+    own = [raya.generate.balls(4).renamed("balls"), raya.generate.lattice(12).renamed("lattice")]
+    runs = [run_grid(lab, scene, grid, size, BOUNCES, "corners")
+            for scene in scenes or own for grid in grids_for(scene.name)]
+    rows = pd.DataFrame([row_of(run) for run in runs])
+    e = pd.DataFrame([run.events for run in runs])
+    table = pd.DataFrame({
+        "scene": rows["scene"], "A x B x C": rows["sides"], "copies": [run.copies for run in runs],
+        "eye rays": e["primary"], "reflected": e["reflected"], "refracted": e["refracted"], "shadow rays": e["shadow"],
+        "walks": e["walks"], "tests": [run.tests for run in runs], "steps": e["steps"],
+        "tests a walk": [run.tests for run in runs] / e["walks"], "steps a walk": e["steps"] / e["walks"],
+        "measured (ms)": [1e3 * run.time.least for run in runs]})
+    known = rows.dropna(subset="their tests")
+    published = [Series("Havran & Sixta", known["their steps"], known["their tests"], "paper")] if len(known) else []
+    return Page({"size": size, "bounces": BOUNCES, "sampling": "corners", "format": "fp32"},
+                [finding_of(known, "Tests a ray", "tests"), finding_of(known, "Steps a ray", "steps"),
+                 *(finding_of_finer(a, b) for (_, a), (_, b) in zip(rows.iterrows(), rows[1:].iterrows())
+                   if a["scene"] == b["scene"])],
+                [c for _, row in rows.iterrows() for c in comparisons_of(row)],
+                tables=[Table("havran", "What was counted", table)],
+                plots=[Plot("havran", "Tests against steps a ray", "steps a ray", "tests a ray",
+                            series_by(rows, "scene", "steps", "tests", style="points") + published, "xy")],
+                beside=papers.GRID, words={"spd": "" if size == SPD_SIZE else " (SPD: 513 x 513)", "depth": BOUNCES + 1})
+
+
+def row_of(run):
+    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, run.divisions), (None, None))
+    return {"scene": run.scene, "sides": sides_text(run.divisions), "tests": run.tests / run.rays,
+            "steps": run.events["steps"] / run.rays, "beyond": (run.events["steps"] - run.events["walks"]) / run.rays,
+            "their tests": tests, "their steps": steps}
+
+
+def comparisons_of(row):
+    name = f"{row['scene']} {row['sides']}"
+
+    def paper(value):
+        return None if pd.isna(value) else value
+
+    yield Comparison(f"{name}: tests a ray", "", paper(row["their tests"]), row["tests"])
+    yield Comparison(f"{name}: steps a ray", "", paper(row["their steps"]), row["steps"],
+                     f"{row['beyond']:.2f} without the first voxel of each walk")
+
+
+def finding_of(known, what, column):
+    if not len(known):
+        return f"{what}: none were published for these grids."
+    ratios = ", ".join(f"{row[column] / row[f'their {column}']:.2f} ({row['scene']} {row['sides']})"
+                       for _, row in known.iterrows())
+    return f"{what} are {ratios} times those that Havran & Sixta publish."
+
+
+def finding_of_finer(coarse, fine):
+    """What a finer grid of one scene does, in ours and in theirs: free of how a ray or a test is counted."""
+    theirs = ""
+    if not pd.isna(coarse["their tests"]) and not pd.isna(fine["their tests"]):
+        theirs = (f"; theirs to {fine['their tests'] / coarse['their tests']:.2f} and "
+                  f"{fine['their steps'] / coarse['their steps']:.2f}")
+    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests fall to "
+            f"{fine['tests'] / coarse['tests']:.2f}, steps grow to {fine['steps'] / coarse['steps']:.2f} times{theirs}.")

@@ -1,0 +1,130 @@
+"""Screen and space divided together: groups of nodes
+
+In how many groups should the nodes share the screen, and what does memory allow?
+
+- {nodes} nodes in G groups, each a 3-D torus of {nodes} / G nodes that holds the whole scene and renders the pixels p
+  with p mod G = g at {size} x {size}, p counted row by row: each row is shifted by {size} mod G against the one above it,
+  as in a cyclic mapping. fp32; all nodes of a group make primary rays and are charged for those that they make and
+  discard.
+- Each group cuts the scene into the same voxels, laid out cyclically on its nodes, so that all G do the same work. G = 1
+  divides space alone, G as many as nodes divides the screen alone.
+- The machine's time is that of its slowest group; speed-up is against one node that has all pixels and the same voxels.
+  How the groups' roots hand their pixels to the host is not modelled.
+- Memory: the part of the scene that the fullest node holds; with it the shortest queue and mailboxes that a hit can ask
+  for; with it those that the study has.
+"""
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import Comparison, Page, Plot, Series, Table, series_by, study
+from raya.lab.torus import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, run_on_torus, sides_text
+
+NODES, SIDES = 64, (4, 8)  # voxels along each axis, of every group: the paper's, finer
+MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: the SPA's, a board's
+
+
+def row_of(lab, scene, size, sides, groups):
+    runs = [run_on_torus(lab, scene, size, near_cube(NODES // groups), (sides,) * 3, pixels=(groups, g))
+            for g in range(groups)]
+    loads = np.concatenate([run.result.loads for run in runs])
+    memory = runs[0].result.node_memory
+    return {"scene": scene.name, "voxels": sides_text((sides,) * 3), "groups": groups, "nodes a group": NODES // groups,
+            "overlapped (ms)": max(run.overlapped_ms for run in runs),
+            "stepwise (ms)": max(run.stepwise_ms for run in runs), "u over all nodes": loads.max() / loads.mean() - 1,
+            "most messages (ms)": max(run.messages_ms for run in runs),
+            "hops a packet": sum(run.hops for run in runs) / max(1, sum(run.packets for run in runs)),
+            "supersteps": max(run.supersteps for run in runs),
+            "tests a ray": sum(run.tests for run in runs) / max(1, sum(run.rays for run in runs)),
+            "rays thrown away": sum(run.discarded for run in runs), "its part of the scene (bytes)": memory["scene"],
+            "with the shortest buffers (bytes)": memory["shortest"], "with the study's (bytes)": memory["used"],
+            "work": sum(run.work_ms for run in runs)}
+
+
+def rows_of(lab, scene, size, sides):
+    """1, 2, 4, ... groups."""
+    rows = pd.DataFrame([row_of(lab, scene, size, sides, 1 << k) for k in range(NODES.bit_length())])
+    # With a node a group none sends a message or discards a ray: together they compute what one node alone would.
+    for bound in ("overlapped", "stepwise"):
+        rows[f"speed-up, {bound}"] = rows["work"].iloc[-1] / rows[f"{bound} (ms)"]
+    for name, size in MEMORIES.items():
+        rows[f"fits {name}"] = np.where(rows["with the shortest buffers (bytes)"] <= size, "yes", "no")
+    return rows
+
+
+@study("hybrid", "Torus: groups of nodes share the screen, each divides space")
+def hybrid(lab, scenes):
+    size = lab.size(72)  # 64 + 8: on 64 groups each row is shifted by the root of their number, the best offset
+    some = scenes or [even_scene(8320), raya.example("centre"), balls_scene(3)]
+    every = [rows_of(lab, scene, size, sides) for scene in some for sides in SIDES]
+    rows = pd.concat(every, ignore_index=True)
+    head = ["scene", "voxels", "groups"]
+    times = rows[head + ["nodes a group", "overlapped (ms)", "stepwise (ms)", "speed-up, overlapped",
+                         "speed-up, stepwise", "u over all nodes", "most messages (ms)", "hops a packet", "supersteps",
+                         "tests a ray", "rays thrown away"]]
+    memory = rows[head + ["its part of the scene (bytes)", "with the shortest buffers (bytes)",
+                          "with the study's (bytes)", "fits 32 KB", "fits 4 MB"]]
+    return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": NODES, "voxels": list(SIDES),
+                 "links": "torus3d", "format": "fp32", "bounces": BOUNCES}, findings_of(every),
+                [Comparison(f"best G, {r['scene'][0]}, {r['voxels'][0]} voxels", "groups", None,
+                            int(r["groups"][r["overlapped (ms)"].idxmin()]), "modelled, overlapped, whatever the memory")
+                 for r in every],
+                tables=[Table("hybrid", "Time of the whole machine", times),
+                        Table("hybrid-memory", "Memory of the fullest node", memory)], plots=plots_of(rows),
+                news=["Yoshitani & Yamazaki name the combination of screen and space division (Harada et al. 1995, their "
+                      "reference [1]) and do not try it; here every number of groups is weighed, in time and in memory."],
+                clock=CLOCK)
+
+
+def size_text(size):
+    """'1.6 KB', rounded up: what is needed."""
+    for unit, scale in (("GB", 1 << 30), ("MB", 1 << 20), ("KB", 1 << 10)):
+        if size >= scale:
+            return f"{np.ceil(10 * size / scale) / 10:.1f} {unit}"
+    return f"{size} bytes"
+
+
+def findings_of(every):
+    def said(with_voxels, text):
+        return "; ".join(f"{r['scene'][0]}{with_voxels.format(r['voxels'][0])}: {text(r)}" for r in every)
+
+    def best(bound):
+        def text(r):
+            i = r[f"{bound} (ms)"].idxmin()
+            return f"G = {r['groups'][i]}, speed-up {r[f'speed-up, {bound}'][i]:.1f} ({r[f'speed-up, {bound}'][0]:.1f} with one group)"
+        return text
+
+    def memory(name):
+        def text(r):
+            fit = r[r[f"fits {name}"] == "yes"]
+            if not len(fit):
+                return f"no G, one group needs {size_text(r['with the shortest buffers (bytes)'][0])} a node"
+            if len(fit) == len(r):
+                return "any G"
+            i = fit["overlapped (ms)"].idxmin()
+            return (f"G = {', '.join(map(str, fit['groups']))}, the best of them {r['groups'][i]}, speed-up "
+                    f"{r['speed-up, overlapped'][i]:.1f}")
+        return text
+
+    return [f"The best number of groups on {NODES} nodes where memory is no matter, overlapped: "
+            f"{said(' with {} voxels', best('overlapped'))}.",
+            f"Where every superstep waits for its busiest node and link: {said(', {}', best('stepwise'))}.",
+            *(f"Nodes of {name}, with the shortest buffers that work, can hold: {said(', {}', memory(name))}."
+              for name in MEMORIES),
+            "u over all nodes, from one group to a group for each node: " + said(
+                ", {}", lambda r: f"{r['u over all nodes'].iloc[0]:.2f} to {r['u over all nodes'].iloc[-1]:.2f}") + "."]
+
+
+def plots_of(rows):
+    labelled = rows.assign(label=rows["scene"] + ", " + rows["voxels"] + " voxels")
+
+    def plot(name, title, y_label, column, log="x", more=()):
+        return Plot(name, title, "groups G", y_label, series_by(labelled, "label", "groups", column) + list(more), log)
+
+    limits = [Series(name, [1, NODES], [size, size]) for name, size in MEMORIES.items()]
+    return [plot("hybrid", "Speed-up against the number of groups, overlapped", "speed-up, modelled",
+                 "speed-up, overlapped"),
+            plot("hybrid-stepwise", "Speed-up against the number of groups, stepwise", "speed-up, modelled",
+                 "speed-up, stepwise"),
+            plot("hybrid-balance", "Imbalance over the nodes of all groups", "u", "u over all nodes"),
+            plot("hybrid-memory", "The fullest node, with the shortest buffers", "bytes",
+                 "with the shortest buffers (bytes)", "xy", limits)]

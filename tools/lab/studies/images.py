@@ -1,0 +1,159 @@
+"""Images of many kinds: efficiency
+
+Is the cyclic mapping good for every image, or only for the one that Kohata & Ito analyse?
+
+- Each scene on {pes} PEs of the SPA, column split and p = sqrt(P) = {offset}; first pass.
+- Where the image is wider than the array, the fold is cyclic: PE i has the slots i, i + P, ...
+- Efficiency = mean load / largest load, computing alone: no clock is needed. Kohata & Ito had several images of 6 to
+  30 objects; their scenes are not known, these are ours, of {fewest} to {most}.
+- Many pictures of a kind stand next to them. {more} Intervals are of 95 %.
+"""
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate, papers, study, verdict
+from raya.lab.laboratory import VIEWS
+
+FEWEST, MOST = 6, 30  # objects, as in the paper
+
+
+def paper_like_scenes():
+    """Ten scenes of 6 to 30 spheres and planes, as in the paper's experiments."""
+    scenes = [raya.example(name) for name in ("centre", "spheres", "mirrors", "glass", "planes")]
+    scenes += [raya.generate.random(n, n).renamed(f"random-{n}") for n in (6, 12, 20, 30)]
+    return scenes + [raya.generate.uniform(27, (3, 3, 3)).renamed("uniform-27")]
+
+
+def rows_of(pictures, objects, pes, offset):
+    u = [[raya.imbalances(one.trace, pes, [p])[0] for one in pictures] for p in (0, offset)]
+    rows = pd.DataFrame({"no.": range(1, len(pictures) + 1), "scene": [one.label for one in pictures],
+                         "objects": objects, "side (pixels)": [len(one.trace) for one in pictures]})
+    for name, values in zip(("p = 0", f"p = {offset}"), u):
+        rows[f"u, {name}"] = values
+        rows[f"efficiency, {name}"] = 1 / (1 + np.array(values))
+    return rows.set_axis([*rows.columns[:4], "u, p = 0", "efficiency, p = 0", f"u, p = {offset}",
+                          f"efficiency, p = {offset}"], axis=1)
+
+
+@study("images", "Efficiency of column split and cyclic mapping over ten scenes, two sizes")
+def images(lab, scenes):
+    pes = lab.size(256)
+    p = round(pes**0.5)
+    some = scenes or paper_like_scenes()
+    pictures = [lab.costs(scene, side) for side in (pes, 2 * pes) for scene in some]
+    rows = rows_of(pictures, [scene.objects for scene in some] * 2, pes, p)
+    columns, cyclic = "efficiency, p = 0", f"efficiency, p = {p}"
+    more = groups_of(lab, scenes, pes)
+    groups = {f"scenes at {side} x {side}": rows[rows["side (pixels)"] == side] for side in rows["side (pixels)"].unique()}
+    groups.update({label: rows_of(group, 0, pes, p) for label, (_, group) in more.items()})
+    every = pd.concat([rows, *list(groups.values())[-len(more):]], ignore_index=True)
+    return Page({"pes": pes, "offset": p, "images": len(rows), "groups": list(more)},
+                findings_of(groups, rows, columns, cyclic, p),
+                comparisons_of(rows, columns, cyclic, pes),
+                [claim_of_columns(every, columns, cyclic), claim_of_cyclic(every, cyclic)] if len(every) > 1 else [],
+                [table_of_groups(groups, columns, cyclic),
+                 Table("images", "Imbalance and efficiency of each image", rows)],
+                [plot_of(rows, columns, cyclic, pes, p), plot_of_groups(groups, columns, cyclic)],
+                ["Kohata & Ito tell of their images in words. Here every image has its figures, next to many views and "
+                 "random scenes with intervals."], beside=papers.SPA,
+                words={"fewest": rows["objects"].min(), "most": rows["objects"].max(),
+                       "more": " ".join(method for method, _ in more.values())})
+
+
+def groups_of(lab, scenes, size):
+    """Views of the scene on which columns do worst, and random scenes of as many objects as the paper's."""
+    groups = {}
+    for scene in scenes or [raya.example("centre")]:
+        views = lab.ensemble(scene, size).views
+        groups[f"views of {scene.name}"] = (f"{len(views)} views of {scene.name}, of the seeds 1..{len(views)}, as in "
+                                            "Fig. 8.", views)
+    if not scenes:
+        pictures = []
+        for i in range(1, VIEWS + 1):
+            n = FEWEST + (i - 1) % (MOST - FEWEST + 1)
+            pictures.append(lab.costs(raya.generate.random(n, i).renamed(f"random-{n}, seed {i}"), size))
+        groups["random scenes"] = (f"{VIEWS} random scenes of {FEWEST} to {MOST} spheres, `raya generate random`, of the "
+                                   f"seeds 1..{VIEWS}.", pictures)
+    return groups
+
+
+def claim_of_columns(every, columns, cyclic):
+    """The paper says so in words, without figures; ours for them are named in the sentence."""
+    strongly = 2
+    off = {c: (every[c] - every[c].mean()).abs() for c in (columns, cyclic)}
+    beyond = estimate(off[columns] - strongly * off[cyclic])
+    return Claim(papers.SPA, "section on the experiments", "The column split's efficiency varies strongly over the "
+                 "images.", verdict(beyond.low > 0, beyond.high <= 0),
+                 f"Over all {len(every)} images the column split's efficiency is {off[columns].mean():.3f} from its mean "
+                 f"in the mean, the cyclic mapping's {off[cyclic].mean():.3f}; strongly is called {strongly} times as "
+                 "much or more.")
+
+
+def claim_of_cyclic(every, cyclic):
+    high, worst = 0.8, every.loc[every[cyclic].idxmin()]
+    return Claim(papers.SPA, "section on the experiments", "The cyclic mapping's efficiency is high for all images.",
+                 verdict(worst[cyclic] >= high, worst[cyclic] < high),
+                 f"Of all {len(every)} images the cyclic mapping's efficiency is lowest for {worst['scene']}, "
+                 f"{worst[cyclic]:.3f}; high is called {high} or more, as it is for {(every[cyclic] >= high).sum()}.")
+
+
+def table_of_groups(groups, columns, cyclic):
+    table = []
+    for label, rows in groups.items():
+        row = {"pictures": label, "number": len(rows)}
+        for name, column in (("p = 0", columns), ("cyclic", cyclic)):
+            mean = estimate(rows[column])
+            row.update({name: mean.mean, f"{name}, +-": mean.half, f"{name}, least": rows[column].min(),
+                        f"{name}, largest": rows[column].max()})
+        table.append(row)
+    return Table("images-groups", "Mean efficiencies, with intervals of 95 %", table)
+
+
+def findings_of(groups, rows, columns, cyclic, p):
+    means = "; ".join(f"{estimate(g[columns]).text()} and {estimate(g[cyclic]).text()} of {len(g)} {label}"
+                      for label, g in groups.items())
+    worst = rows.loc[rows[cyclic].idxmin()]
+    lost = (rows[columns] > rows[cyclic]).sum()
+    size = "{0} x {0}".format(worst["side (pixels)"])
+    rest = (f"The column split is the better one for {lost} of {len(rows)} images." if lost else
+            f"It is never below the column split on {len(rows)} images.")
+    return [f"Mean efficiency of p = 0 and of the cyclic mapping: {means}.",
+            f"Of the scenes' own pictures efficiency is {rows[columns].min():.3f} to {rows[columns].max():.3f} with the "
+            f"column split and {rows[cyclic].min():.3f} to {rows[cyclic].max():.3f} with p = {p}.",
+            f"The cyclic mapping's lowest is {worst['scene']} at {size}: {worst[cyclic]:.3f}, where the column split has "
+            f"{worst[columns]:.3f}. {rest}"]
+
+
+def comparisons_of(rows, columns, cyclic, pes):
+    first = rows.iloc[0]
+    same = pes == papers.PES and first["scene"] == "centre" and first["side (pixels)"] == papers.SIZE
+    name = "{0} at {1} x {1}".format(first["scene"], first["side (pixels)"])
+    source = "of their most unbalanced image" if same else ""
+    return [Comparison(f"{name}, p = 0", "", papers.EFFICIENCY_0 if same else None, first[columns], source, True),
+            Comparison(f"{name}, cyclic", "", papers.EFFICIENCY_16 if same else None, first[cyclic], source, True),
+            Comparison("lowest of all, p = 0", "", None, rows[columns].min(), "Kohata & Ito: varies strongly"),
+            Comparison("highest of all, p = 0", "", None, rows[columns].max()),
+            Comparison("lowest of all, cyclic", "", None, rows[cyclic].min(), "Kohata & Ito: high for all"),
+            Comparison("highest of all, cyclic", "", None, rows[cyclic].max())]
+
+
+def plot_of(rows, columns, cyclic, pes, p):
+    """Scenes are numbered in the order of their first image, and named below the axis."""
+    first = rows[rows["side (pixels)"] == rows["side (pixels)"].iloc[0]]
+    names = [f"{i} {scene}" for i, scene in enumerate(first["scene"], 1)]
+    lines = ",\n".join(", ".join(names[i:i + 5]) for i in range(0, len(names), 5))
+    series = [Series(f"p = {offset} at {side} x {side}", range(1, len(some) + 1), some[column], "points")
+              for offset, column in ((p, cyclic), (0, columns))
+              for side, some in rows.groupby("side (pixels)", sort=False)]
+    if pes == papers.PES and rows["scene"].iloc[0] == "centre":
+        series.append(Series("Kohata & Ito, their worst image", [1, 1], [papers.EFFICIENCY_0, papers.EFFICIENCY_16],
+                             "paper"))
+    return Plot("images", "Efficiency over the scenes", f"scene: {lines}", "efficiency", series)
+
+
+def plot_of_groups(groups, columns, cyclic):
+    """Efficiencies in ascending order: how many pictures have so little or less."""
+    series = [Series(f"{name}, {label}", 100 * np.arange(1, len(rows) + 1) / len(rows), np.sort(rows[column]), "steps")
+              for label, rows in groups.items() for name, column in (("cyclic", cyclic), ("p = 0", columns))]
+    return Plot("images-groups", "How many pictures are so efficient", "share of the pictures, ascending (%)",
+                "efficiency", series)

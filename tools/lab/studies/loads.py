@@ -1,0 +1,104 @@
+"""Figs 7 and 12: the load of each PE over the mean load, in the first pass and in supersampling."""
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, estimate, papers, range_text,
+                      settings_of_pass, study, verdict)
+
+PROSE = """{figure}
+
+{question}
+
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; {phase}.
+- Loads are the sums of the modelled cycles that the kernels counted for each pixel, over the mean load of all PEs: no
+  clock is needed.
+- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
+  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
+  looks at. Intervals are of 95 %."""
+
+FLAT = 0.1  # ours: mean loads by which the middle may differ from the sides and yet be called flat
+
+
+def shares(image, offset):
+    """The load of each PE over the mean load; 1 where there is no load."""
+    loads = raya.loads(image, offset=offset)
+    return loads / loads.mean() if loads.any() else np.ones(len(loads))
+
+
+def middle_and_sides(loads):
+    """Mean loads of the middle quarter of the PEs, and of the quarter at both sides; [..., PE]."""
+    eighth, middle = loads.shape[-1] // 8, loads.shape[-1] // 2
+    sides = (loads[..., :eighth].mean(-1) + loads[..., loads.shape[-1] - eighth:].mean(-1)) / 2
+    return loads[..., middle - eighth:middle + eighth].mean(-1), sides
+
+
+def page_of(name, lab, scenes, first):
+    scene, size, picture, views = balance_pass(lab, scenes, first)
+    offsets = (0, 16 % size)
+    own = [shares(picture, p) for p in offsets]
+    of_views = [np.array([shares(view, p) for view in views]) for p in offsets]  # [view, PE]
+    means = [[estimate(column) for column in some.T] for some in of_views]
+    u = [np.array([raya.imbalances(view, size, [p])[0] for view in views]) for p in offsets]
+    own_u = [raya.imbalances(picture, size, [p])[0] for p in offsets]
+    hump = []
+    for some in of_views:
+        middle, sides = middle_and_sides(some)
+        hump.append(estimate(middle - sides))
+    rows = pd.DataFrame({"PE": range(size), "p = 0 (cycles)": raya.loads(picture, offset=0),
+                         "p = 16 (cycles)": raya.loads(picture, offset=offsets[1])})
+    for label, some in (("p = 0", means[0]), ("p = 16", means[1])):
+        rows[f"{label}, mean of views"] = [m.mean for m in some]
+        rows[f"{label}, +-"] = [m.half for m in some]
+
+    in_paper = first and papers.printed(True, scene, size)
+    figure = papers.IMBALANCE_0 if in_paper else None, papers.IMBALANCE_16 if in_paper else None
+    remarks = ("calibrated on: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
+    mean_u = [estimate(some) for some in u]
+    comparisons = [Comparison(f"u({p})", "", figure[i], own_u[i], remarks[i], derived=True)
+                   for i, p in enumerate((0, 16))]
+    comparisons += [Comparison(f"u({p}), mean of views", "", figure[i], mean_u[i].mean, derived=True,
+                               half_width=mean_u[i].half) for i, p in enumerate((0, 16))]
+
+    place = "Fig. 7" if first else "Fig. 12"
+    over = f"Over {len(views)} views a PE of the middle quarter carries "
+    flat = hump[1].low >= -FLAT and hump[1].high <= FLAT
+    uneven = hump[1].high < -FLAT or hump[1].low > FLAT
+    claims = [Claim(papers.SPA, place, "With p = 0 the load has a hump in the middle.",
+                    verdict(hump[0].low > 0, hump[0].high <= 0),
+                    f"{over}{hump[0].text(2)} mean loads more than one of the quarter at the sides."),
+              Claim(papers.SPA, place, "With p = 16 the load is flat.", verdict(flat, uneven),
+                    f"{over}{hump[1].text(2)} mean loads more than one at the sides; flat is called what is within "
+                    f"{FLAT}.")]
+    middle, sides = middle_and_sides(own[0])
+    findings = [f"In the picture the PEs of the middle quarter carry {middle:.2f} times the mean load with columns and "
+                f"those of the quarter at the sides {sides:.2f} times; with p = 16 the lightest PE carries "
+                f"{own[1].min():.2f} times and the heaviest {1 + own_u[1]:.2f} times the mean.",
+                f"Over {len(views)} views u is {mean_u[0].text()} with columns ({range_text(u[0])}) and "
+                f"{mean_u[1].text()} with p = 16 ({range_text(u[1])})."]
+    some = rows[rows["PE"] % max(size // 64, 1) == 0]
+    labels = ("p = 0, column split", "p = 16, cyclic mapping")
+    mean_line = Series("mean", [0, size - 1], [1, 1])
+    phase = "first pass" if first else "supersampling alone"
+    plots = [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
+                  [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
+             Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {len(views)} views", "PE", "load / mean load",
+                  [Series(label, some["PE"], some[f"{p}, mean of views"], half_widths=some[f"{p}, +-"])
+                   for label, p in zip(labels, ("p = 0", "p = 16"))] + [mean_line])]
+    return Page({**settings_of_pass(scene, size, views), "offsets": list(offsets)}, findings, comparisons, claims,
+                [Table(name, "Load of each PE", rows, on_page=False)], plots,
+                ["Kohata & Ito show one image. Many views of a scene tell what belongs to the mapping and what to the "
+                 "picture."], beside=papers.SPA,
+                words={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase,
+                       "question": "How is the work of one image spread over the PEs, by columns and by the cyclic "
+                       "mapping?" if first else "Is the extra work of supersampling spread as evenly as the first "
+                       "pass?"})
+
+
+@study("fig7", "Load of each PE, column split and cyclic mapping", prose=PROSE, one_scene=True)
+def fig7(lab, scenes):
+    return page_of("fig7", lab, scenes, first=True)
+
+
+@study("fig12", "Load of each PE in supersampling", prose=PROSE, one_scene=True)
+def fig12(lab, scenes):
+    return page_of("fig12", lab, scenes, first=False)

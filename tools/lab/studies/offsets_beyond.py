@@ -1,0 +1,154 @@
+"""Offsets beyond sqrt(P)
+
+Is every offset beyond sqrt(P) = {reference} worse, as Kohata & Ito say?
+
+- {labels} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass. Views are of the seeds 1, 2,
+  ..., as in Fig. 8: {pictures} pictures. Intervals are of 95 %.
+- The pixels of a PE form a lattice. Its shortest vector, the least distance between two pixels of one PE, says how
+  well an offset can spread what is costly; measured in the image, and the same on the torus.
+- Offsets are compared with p = {reference}, vector {length} pixels; p = {mirror}, its mirror, is in no group.
+  Differences are of the same picture.
+- "0..n is enough" is reproduced where no offset beyond gains 0.02 of the mean load over the best of 0..n, and not
+  reproduced where one does, all together with 95 % (Bonferroni).
+"""
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, papers, study, verdict
+from raya.lab.laboratory import VIEWS
+from raya.lab.lattice import shares_blocks, shortest_square
+from raya.lab.studies.images import paper_like_scenes
+from scipy.stats import rankdata, spearmanr
+
+NOTHING = 0.02  # ours: a part of the mean load that is no gain worth an offset
+OTHERS = 16  # views of each scene but the first, whose views Fig. 8 has too
+CORRELATED = -0.5
+
+
+@study("lattice", "Are offsets beyond the square root of P worse?")
+def lattice(lab, scenes):
+    size = lab.size(256)
+    some = scenes or [s for s in paper_like_scenes()
+                      if s.name in ("centre", "mirrors", "glass", "random-12", "random-30")]
+    views = {s.name: lab.ensemble(s, size, "none", VIEWS if i == 0 else OTHERS).views for i, s in enumerate(some)}
+    of_scene = {name: np.array([raya.imbalances(view.trace, size, range(size)) for view in all_of])
+                for name, all_of in views.items()}
+    u = np.concatenate(list(of_scene.values()))  # [picture, offset]
+    n = round(size**0.5)
+    squares = np.array([shortest_square(p, size) for p in range(size)])
+    beyond = [p for p in range(n + 1, size) if p != size - n]
+    longer = [p for p in beyond if squares[p] > squares[n]]
+    as_long = [p for p in beyond if squares[p] == squares[n]]
+    means = [estimate(column) for column in u.T]
+    rows = pd.DataFrame({
+        "p": range(size), "shortest vector (pixels)": np.sqrt(squares), "mean u": [m.mean for m in means],
+        "+-": [m.half for m in means], "mean rank": rankdata(u, axis=1).mean(0),
+        **{f"u, {name}": some.mean(0) for name, some in of_scene.items()},
+        "n x n blocks shared": ["yes" if shares_blocks(p, size, n) else "no" for p in range(size)]})
+    wins = (u < u[:, n:n + 1]).sum(0)
+    best = int(rows["mean u"].idxmin())
+    chosen = [0, n, *longer, *as_long] + ([best] if best not in [0, n, *longer, *as_long] else [])
+    table = rows.loc[chosen, ["p", "shortest vector (pixels)", "mean u", "+-", "mean rank"]].rename(
+        columns={"mean rank": f"mean rank of {size}"})
+    table[f"pictures better than p = {n}"] = wins[chosen]
+    correlations = [spearmanr(np.sqrt(squares), one)[0] for one in u]
+    labels = ", ".join(f"{name} ({len(some)} views)" for name, some in views.items())
+    return Page({"scenes": list(views), "size": size, "pes": size, "reference": n, "pictures": len(u),
+                 "views": [len(some) for some in views.values()]},
+                findings_of(rows, u, n, longer, as_long, correlations, squares),
+                comparisons_of(rows, n, longer, as_long, correlations),
+                [claim_of_blocks(rows, n)] + ([claim_of_enough(u, means, n)] if len(u) > 1 else []),
+                [Table("lattice-chosen", f"p = 0, p = {n}, those that spread as well or better, and the best of all",
+                       table), Table("lattice", "Every offset", rows, on_page=False)],
+                [plot_of(rows, n, longer, as_long, len(u), "lattice", "shortest vector (pixels)", "points",
+                         "Imbalance against the shortest distance between two pixels of a PE",
+                         "shortest vector of the lattice (pixels)"),
+                 plot_of(rows, n, longer, as_long, len(u), "lattice-offsets", "p", "line",
+                         "Imbalance against the offset", "offset p (pixels)")],
+                ["The lattice of an offset is not in Kohata & Ito. It names the offsets beyond sqrt(P) that spread as "
+                 "well, and shows why those near the rest do not."],
+                words={"labels": labels, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, beside=papers.SPA)
+
+
+def claim_of_blocks(rows, n):
+    shared = rows["n x n blocks shared"] == "yes"
+    own = shared[n] and n * n == len(rows)
+    return Claim(papers.SPA, "section on the cyclic mapping",
+                 "With p = n on n x n PEs every n x n block is shared by all PEs, a pixel each.", verdict(own, not own),
+                 f"Counted for n = {n}: the PEs {'do' if own else 'do not'} share every n x n block so. {shared.sum()} "
+                 f"offsets have no two pixels of one PE in any such block: {', '.join(map(str, rows['p'][shared]))}.")
+
+
+def claim_of_enough(u, means, n):
+    """Whether no offset beyond n gains more than nothing over the best of 0..n, or one does."""
+    near = int(np.argmin([m.mean for m in means[:n + 1]]))
+    beyond = range(n + 1, len(means))
+    gains = [estimate(u[:, p] - u[:, near], each_of(len(beyond))) for p in beyond]
+    best = min(beyond, key=lambda p: means[p].mean)
+    better = sum(g.high < 0 for g in gains)
+    return Claim(papers.SPA, "section on the cyclic mapping",
+                 "Offsets beyond n = sqrt(P) only turn the direction of the bias, so 0..n is enough.",
+                 verdict(all(g.low >= -NOTHING for g in gains), any(g.high < -NOTHING for g in gains)),
+                 f"Over {len(u)} pictures the best of 0..n is p = {near}, mean u {means[near].text()}; the best beyond is "
+                 f"p = {best}, {means[best].text()}. Of {len(beyond)} offsets beyond n {better} are better than the best "
+                 f"of 0..n with certainty; a gain of {NOTHING} or less is called nothing.")
+
+
+def findings_of(rows, u, n, longer, as_long, correlations, squares):
+    mean, size = rows["mean u"], len(rows)
+
+    def group(offsets, vector):
+        if not offsets:
+            return f"none has a vector {vector}"
+        return (f"{len(offsets)} have a vector {vector}, of which {(mean[offsets] < mean[n]).sum()} have a lower mean u "
+                f"than p = {n}, their mean {mean[offsets].mean():.4f}")
+
+    both, verdict_text = longer + as_long, "So nothing can be gained beyond sqrt(P)."
+    if both:
+        gain = estimate(u[:, both].mean(1) - u[:, n])
+        how = ("they are better on the whole" if gain.high < 0 else "they are worse on the whole" if gain.low > 0 else
+               "no difference can be told")
+        verdict_text = f"In the same picture their mean u is {gain.text(4)} above that of p = {n}: {how}."
+    spread = (f"Of the offsets beyond {n} (u = {estimate(u[:, n]).text(4)}), {group(longer, 'longer than its own')}; "
+              f"{group(as_long, 'as long')}. {verdict_text}")
+    best = mean.idxmin()
+    rest = [p for p in range(n + 1, size - n) if squares[p] < squares[n]]
+    low, high = min(correlations), max(correlations)
+    how = ("in every picture a longer shortest vector goes with a lower u" if high <= CORRELATED else
+           "in no picture does the shortest vector tell much about u" if low > CORRELATED else
+           "the shortest vector tells u in some pictures and not in others")
+    half = squares[n]**0.5 / 2
+    some = np.sqrt(squares) >= half
+    of_some = np.mean([spearmanr(np.sqrt(squares[some]), one[some])[0] for one in u])
+    return [spread,
+            f"Best of all {size} is p = {best}, mean u = {mean[best]:.4f}: a largest load "
+            f"{100 * (1 - (1 + mean[best]) / (1 + mean[n])):.1f} % below that of p = {n}, which has a mean rank of "
+            f"{rows['mean rank'][n]:.1f}.",
+            f"Of the {len(rest)} offsets from {n + 1} to {size - n - 1} with a shorter vector, "
+            f"{(mean[rest] > mean[n]).sum()} are worse than p = {n}.",
+            f"Rank correlation of u with the shortest vector over all offsets: {low:.2f} to {high:.2f}; {how} (\"tells\": "
+            f"{CORRELATED} or below). Over the offsets with a vector of {half:.1f} pixels or more it is {of_some:.2f} in "
+            "the mean."]
+
+
+def comparisons_of(rows, n, longer, as_long, correlations):
+    mean, best = rows["mean u"], int(rows["mean u"].idxmin())
+    all_of = [Comparison(f"mean u, p = {n}", "", None, mean[n], half_width=rows["+-"][n]),
+              Comparison("lowest mean u of all offsets", "", None, mean[best], f"p = {best}",
+                         half_width=rows["+-"][best])]
+    for vector, offsets in (("longer vector", longer), ("as long", as_long)):
+        all_of += [Comparison(f"offsets beyond {n}, {vector}", "", None, len(offsets), ", ".join(map(str, offsets))),
+                   Comparison(f"... better than p = {n}", "", None, int((mean[offsets] < mean[n]).sum()),
+                              "Kohata & Ito: beyond sqrt(P) only the direction of the bias turns")]
+    return all_of + [Comparison("rank correlation of u and shortest vector", "", None, float(np.mean(correlations)),
+                                "mean of the pictures")]
+
+
+def plot_of(rows, n, longer, as_long, pictures, name, x, style, title, x_label):
+    def points(label, offsets):
+        some = rows.loc[offsets]
+        return Series(label, some[x], some["mean u"], "points", some["+-"])
+
+    return Plot(name, title, x_label, f"u, mean of {pictures} pictures",
+                [Series("every offset", rows[x], rows["mean u"], style), points(f"beyond {n}, longer vector", longer),
+                 points(f"beyond {n}, as long", as_long), points(f"p = {n}", [n])], "y")

@@ -1,0 +1,234 @@
+"""Static against dynamic distribution
+
+Are static strategies inadequate from 128 PEs on, and static plus dynamic ones nearly optimal, as Heirich and Arvo
+(1998) found?
+
+- Images of {size} x {size} on 128 and more PEs of the SPA; efficiency = the pixels' modelled cycles / (P x the time at
+  which the last PE has finished).
+- Static: column split, cyclic mapping with p = 16 and p = sqrt(P), blocks of contiguous scan lines, tiles of 8 x 8
+  pixels in turn, the grid nearest to a square (every A-th line, every B-th pixel), random.
+- dynamic:C: a PE that is free takes the next C pixels. hybrid:C: each PE first does a share of its own pixels (of the
+  grid, row by row from the top) and then takes C at a time of what is left. Both are simulated exactly on the cost
+  image.
+- A request costs its PE {request_cycles} budget cycles: one word to the root and two back at 6 Mword/s, each way with
+  the synchronisation that a rotation has, 0.18 ms by the clock. That is what a barrier of all PEs takes, the most that
+  the request of one can; "free requests" shows the least. The SPA never did this. Requests do not wait for each other.
+- Nothing can end sooner than the larger of the mean load and the largest pixel: the lower bound.
+"""
+import math
+
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import Claim, Page, Plot, Series, Table, papers, study, verdict
+from raya.lab.laboratory import SPA
+from raya.lab.mappings import squarest_grid
+from raya.lab.spa import CLOCK, FACTOR, FACTORS, spa_ms
+
+NAME, NEAR, FEWEST, MOST = "static-vs-dynamic", 1.1, 128, 16_384
+ROOT = "cyclic, p = sqrt(P)"
+
+
+def request_cycles(factor):
+    """Budget cycles from a request until its answer is there: a word to the root, two back."""
+    ms = 2 * SPA["rotation_sync_ms"] + 1e3 * 3 / SPA["link_words_per_s"]
+    return math.floor(1e6 * ms / (factor * SPA["cycle_ns"]) + 0.5)
+
+
+def static_mappings(size, pes):
+    tile = math.gcd(size, 8)
+    grid = "grid:{}x{}".format(*squarest_grid(pes))
+    return {"column split": {"mapping": "column"}, "cyclic, p = 16": {"offset": 16 % size},
+            ROOT: {"offset": round(pes**0.5) % size}, "blocks of scan lines": {"mapping": "blocks"},
+            "tiles 8 x 8": {"mapping": f"tiles:{tile}x{tile}"}, "grid": {"mapping": grid},
+            "random": {"mapping": "random:1"}}
+
+
+def plans(overhead):
+    """Name, kind, whether it pays for requests, plan; what a hybrid begins with is the grid."""
+    for chunk, share in ((1, 0), (16, 0), (64, 0), (16, 0.5), (16, 0.9), (1, 0.9)):
+        kind = "hybrid" if share else "dynamic"
+        name = f"{kind}:{chunk}" + (f", share {share}" if share else "")
+        for cost in (0, overhead):
+            plan = f"{kind}:{chunk},{cost}" + (f",{share}" if share else "")
+            yield name + ("" if cost else ", free requests"), kind, cost > 0, plan
+
+
+def outcomes_of(label, image, sizes, overhead):
+    """A row of each strategy and number of PEs."""
+    size, total, rows = len(image), int(image.sum()), []
+    for pes in sizes:
+        bound = raya.lower_bound(image, pes)
+
+        def add(name, kind, pays, makespan, requests):
+            rows.append({"scene": label, "strategy": name, "P": pes, "makespan (cycles)": makespan,
+                         "efficiency": total / (pes * makespan), "makespan / lower bound": makespan / bound,
+                         "requests": requests, "kind": kind, "pays": pays, "bound": total / (pes * bound)})
+
+        mappings = static_mappings(size, pes)
+        for name, options in mappings.items():
+            add(name, "static", False, int(raya.loads(image, pes=pes, **options).max()), 0)
+        for name, kind, pays, plan in plans(overhead):
+            start = mappings["grid"] if kind == "hybrid" else {"mapping": "column"}
+            run = raya.schedule(image, plan, pes=pes, **start)
+            add(name, kind, pays, run["makespan"], run["requests"])
+    rows = pd.DataFrame(rows)
+    order = rows["strategy"].unique()
+    return rows.sort_values("strategy", key=lambda s: s.map({n: i for i, n in enumerate(order)}), kind="stable",
+                            ignore_index=True)
+
+
+def best_of(rows, kind):
+    """Of each P the row of the best strategy of a kind; of those that ask, of those that pay for requests."""
+    some = rows[(rows["kind"] == kind) & (rows["pays"] | (kind == "static"))]
+    return some.loc[some.groupby("P", sort=True)["makespan (cycles)"].idxmin()].reset_index(drop=True)
+
+
+def counts_of(scenes):
+    """Of the cases, scene and P: in how many no static one is near the bound, a hybrid is, a hybrid beats all static."""
+    fixed, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
+    return {"cases": len(fixed), "no static one near the bound": (fixed["makespan / lower bound"] > NEAR).sum(),
+            "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR).sum(),
+            "hybrid beats all static ones": (hybrid["makespan (cycles)"].values <
+                                             fixed["makespan (cycles)"].values).sum()}
+
+
+@study(NAME, "Static mappings against dynamic and hybrid distribution")
+def static_vs_dynamic(lab, scenes):
+    size = lab.size(512)
+    own = [raya.example("centre"), raya.generate.random(200, 200).renamed("random-200"),
+           raya.generate.balls(3).renamed("balls-3")]
+    sizes = [p for p in (2**k for k in range(7, 15)) if FEWEST <= p <= min(MOST, size * size)]
+    images = {scene.name: lab.costs(scene, size).trace for scene in scenes or own}
+    by_factor = {f: [outcomes_of(name, image, sizes, request_cycles(f)) for name, image in images.items()]
+                 for f in (FACTORS[0], FACTOR, FACTORS[-1])}
+    all_of = by_factor[FACTOR]
+    factors = pd.DataFrame([{"factor": f, "request (budget cycles)": request_cycles(f), **counts_of(rows)}
+                            for f, rows in by_factor.items()])
+    tables, plots = [], []
+    for number, rows in enumerate(all_of, 1):
+        percent = 100 * rows.pivot_table("efficiency", "strategy", "P", sort=False)
+        percent.loc["most that is possible"] = 100 * rows.groupby("P")["bound"].first()
+        tables.append(Table(f"{NAME}-{number}", f"Efficiency (%) by P, {rows['scene'][0]}",
+                            percent.rename(columns=str).reset_index()))
+        plots += plots_of(rows, percent, number)
+    every = pd.concat(all_of, ignore_index=True)
+    limits = every.groupby(["scene", "strategy"], sort=False).apply(
+        lambda one: pd.Series({f"P, under {100 * limit:.0f} %": first_below(one, limit) or "never"
+                               for limit in (0.9, 0.5)})).reset_index()
+    shown = every.drop(columns=["kind", "pays", "bound"])
+    return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
+                 "random_seed": 1, "scenes": list(images)},
+                findings_of(all_of, counts_of(all_of), request_cycles(FACTOR), size), claims=claims_of(factors),
+                tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is under 90 % and under "
+                                       "50 %", limits),
+                                 Table(NAME, "Every strategy, scene and number of PEs", shown, on_page=False),
+                                 Table(f"{NAME}-factors", "The verdicts by the clock's factor, cases of scene and P",
+                                       factors)],
+                plots=plots, news=["Heirich & Arvo measured on other machines and scenes. Here static, dynamic and "
+                                   "hybrid distribution meet the same cost images, next to the bound that nothing "
+                                   "passes."], clock=CLOCK, beside=papers.DYNAMIC)
+
+
+def first_below(rows, limit):
+    """The first number of PEs at which the efficiency is below the limit; 0: at none."""
+    below = rows["P"][rows["efficiency"] < limit]
+    return below.iloc[0] if len(below) else 0
+
+
+def from_text(pes):
+    return f"from P = {pes}" if pes else "at no P"
+
+
+def claims_of(factors):
+    def counts(column):
+        return ", ".join(f"{row[column]:.0f} of {row['cases']:.0f} by the factor {row['factor']:.2f}"
+                         for _, row in factors.iterrows())
+
+    def judged(column):
+        return verdict((factors[column] == factors["cases"]).all(), (factors[column] == 0).all())
+
+    fixed, hybrid = "no static one near the bound", "hybrid near the bound"
+    return [Claim(papers.DYNAMIC, "conclusions", "Static strategies are inadequate on 128 computers or more.",
+                  judged(fixed), f"No static one ends within 10 % of the lower bound in {counts(fixed)}."),
+            Claim(papers.DYNAMIC, "conclusions", "Static plus dynamic distribution is nearly optimal.", judged(hybrid),
+                  f"A hybrid, requests paid for, ends within 10 % of it in {counts(hybrid)}.")]
+
+
+def findings_of(scenes, counts, overhead, size):
+    inadequate, cases = counts["no static one near the bound"], counts["cases"]
+    how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
+    findings = [f"That static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} of "
+                f"{cases} cases (scene and P) no static one ends within 10 % of the lower bound. Static plus dynamic, "
+                f"requests paid for, does in {counts['hybrid near the bound']} of them and beats every static strategy in "
+                f"{counts['hybrid beats all static ones']}."]
+    for rows in scenes:
+        findings += [static_finding(rows), hybrid_finding(rows)]
+    collapse = collapse_finding(scenes[0], size)
+    queues = "; ".join(f"{rows['scene'][0]} ({queue_of(rows, overhead)})" for rows in scenes)
+    return findings + ([collapse] if collapse else []) + [
+        f"A request takes {overhead} budget cycles ({FACTOR * spa_ms(overhead):.2f} ms). If the root answered them one at "
+        f"a time, as one bus would make it, they alone would take longer than the run that is shown: {queues}."]
+
+
+def static_finding(rows):
+    best = best_of(rows, "static")
+    first, last = best.iloc[0], best.iloc[-1]
+
+    def limits(some):
+        return f"{from_text(first_below(some, 0.9))} and {from_text(first_below(some, 0.5))}"
+
+    def of(name):
+        return rows[rows["strategy"] == name]
+
+    return (f"{rows['scene'][0]}, static: at P = {first['P']} {first['strategy']} is best, {100 * first['efficiency']:.0f} "
+            f"% efficient, at P = {last['P']} {last['strategy']}, {100 * last['efficiency']:.0f} % (of "
+            f"{100 * last['bound']:.0f} % possible). The best of them falls under 90 % {from_text(first_below(best, 0.9))} "
+            f"and under 50 % {from_text(first_below(best, 0.5))}; the column split {limits(of('column split'))}, cyclic "
+            f"with p = sqrt(P) {limits(of(ROOT))}.")
+
+
+def hybrid_finding(rows):
+    paid = best_of(rows, "hybrid")["makespan / lower bound"]
+    some = rows[(rows["kind"] == "hybrid") & ~rows["pays"]]
+    free = some.groupby("P")["makespan / lower bound"].min()
+    near, sizes = int((paid <= NEAR).cummin().sum()), sorted(rows["P"].unique())
+    up_to = (f"at P = {sizes[0]}" if near == 0 else "for every P" if near == len(sizes) else
+             f"up to P = {sizes[near - 1]}")
+    return (f"{rows['scene'][0]}, static plus dynamic: {'' if near else 'not '}within 10 % of the lower bound {up_to}; at "
+            f"worst the best of them ends {max(1, paid.max()):.2f} times the lower bound with requests paid for, "
+            f"{max(1, free.max()):.2f} times with free ones.")
+
+
+def queue_of(rows, overhead):
+    words = []
+    for name, some in rows[rows["pays"]].groupby("strategy", sort=False):
+        late = some["P"][some["requests"] * overhead > some["makespan (cycles)"]]
+        words.append(f"{name} {from_text(late.iloc[0] if len(late) else 0)}")
+    return ", ".join(words)
+
+
+def collapse_finding(rows, size):
+    """Where the cyclic mapping falls back to single columns: p and the turns in which P / W PEs share a slot's rows meet."""
+    texts = []
+    for name in ("cyclic, p = 16", ROOT):
+        for pes in sorted(rows["P"].unique()):
+            owners = raya.owners(size, size, pes=int(pes), **static_mappings(size, int(pes))[name])
+            columns = np.broadcast_to(np.arange(size), owners.shape)
+            least, most = np.full(pes, size), np.full(pes, -1)
+            np.minimum.at(least, owners, columns)
+            np.maximum.at(most, owners, columns)
+            if (least >= most).all():
+                texts.append(f"{name} at P = {pes}")
+    if not texts:
+        return ""
+    return (f"No better than the column split can be: {'; '.join(texts)}. Each PE's pixels lie in one column there, as "
+            "the offset comes round within the rows after which a slot's PEs do.")
+
+
+def plots_of(rows, percent, number):
+    kinds = rows.drop_duplicates("strategy").set_index("strategy")
+    for label, names in (("static", kinds.index[kinds["kind"] == "static"]), ("dynamic", kinds.index[kinds["pays"]])):
+        what = "static mappings" if label == "static" else "dynamic and hybrid distribution"
+        yield Plot(f"{NAME}-{number}-{label}", f"{rows['scene'][0]}: {what}", "PEs", "efficiency (%)",
+                   [Series(name, percent.columns, percent.loc[name]) for name in [*names, "most that is possible"]], "x")
