@@ -27,10 +27,14 @@ PYBIND11_MODULE(_engine, module) {
     using namespace raya;
     set_module_folder(own_folder());
     set_verbosity(kSilent);  // warnings are Python's
-    const pybind11::object refused = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
-    pybind11::register_exception<Standstill>(module, "Deadlock", refused);
-    pybind11::register_exception<DoesNotFit>(module, "DoesNotFit", refused);
-    pybind11::register_exception<DeviceError>(module, "DeviceError", PyExc_RuntimeError);
+    auto& refused = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
+    refused.doc() = "What was asked for cannot be done.";
+    pybind11::register_exception<Standstill>(module, "Deadlock", refused).doc() =
+        "Buffers of a torus are too short for its packets.";
+    pybind11::register_exception<DoesNotFit>(module, "DoesNotFit", refused).doc() =
+        "A PE or node cannot hold its part of the scene.";
+    pybind11::register_exception<DeviceError>(module, "DeviceError", PyExc_RuntimeError).doc() =
+        "There is no such OpenCL device, or it failed.";
     module.attr("STATUS_WORDS") = std::uint32_t{RAYA_STATUS_WORDS};  // of a node, to the host in each superstep
     module.attr("__version__") = raya_version();
     add_scenes(module);

@@ -1,8 +1,10 @@
 // Scenes: reading, writing, generating and changing them.
 #include <fmt/core.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "host/cli/scene_input.hpp"
 #include "host/cli/view_options.hpp"
@@ -22,8 +24,8 @@
 namespace raya {
 namespace {
 
-Scene loaded(const std::string& file, bool strict) {
-    SceneInput input = read_scene(file, strict);
+Scene loaded(const std::filesystem::path& file, bool strict) {
+    SceneInput input = read_scene(file.string(), strict);
     for (const std::string& text : input.warnings.texts())
         if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
     return std::move(input.scene);
@@ -69,7 +71,7 @@ std::size_t job_words(const Scene& scene) {
     return pack_job(scene, {{1, 1}, Sampling::kCentres, spa.bounces, cycles_of_events(), spa.format}).words().size();
 }
 
-void save(const Scene& scene, const std::string& path) { write_whole_file(path, write_nff(scene)); }
+void save(const Scene& scene, const std::filesystem::path& path) { write_whole_file(path, write_nff(scene)); }
 
 void add_generators(py::module_& module) {
     py::module_ g = module.def_submodule("generate", "Scenes that a program makes; those of raya generate.");

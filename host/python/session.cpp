@@ -60,13 +60,15 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
     RenderCommand command;
     CLI::App* render = program.add_subcommand("render");
     describe_render(*render, command);
+    render->callback([&] {
+        refuse_sequences(command);
+        refuse_options_of_other_machines(*render, machine_named(command.render.machine));
+        check_files(*render);
+        check_render(*render, command);
+    });
     std::vector<std::string> words = {"render"};
     for (const std::string& word : option_words(options)) words.push_back(word);
     parse_words(program, words);
-    refuse_sequences(command);
-    refuse_options_of_other_machines(*render, machine_named(command.render.machine));
-    check_files(*render);
-    check_render(*render, command);
     return command;
 }
 

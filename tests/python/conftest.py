@@ -1,0 +1,6 @@
+"""Finds the package `raya` in the build folder: RAYA_BUILD, or build/ of this checkout."""
+import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(os.environ.get("RAYA_BUILD", Path(__file__).parents[2] / "build")) / "python"))

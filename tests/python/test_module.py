@@ -1,0 +1,225 @@
+"""The module `raya`: what the command line says, as arrays. Random cases print their seed where they fail."""
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
+SCENES = Path(__file__).parents[2] / "scenes"
+SEED = 32
+SMALL = {"size": 32, "pes": 32, "offset": 4}
+
+
+@pytest.fixture(scope="module")
+def centre():
+    return raya.load(SCENES / "centre.nff")
+
+
+@pytest.fixture(scope="module")
+def small(centre):
+    return raya.render(centre, cost=True, **SMALL)
+
+
+def test_picture_of_the_readme(centre):
+    result = raya.render(centre)
+    assert result.hash.startswith("474a3843")
+    assert result.image.shape == (256, 256, 3) and result.image.dtype == np.float32
+
+
+def test_imbalance_of_all_offsets(centre):
+    cost = raya.render(centre, machine="spa", offset=16, cost=True).cost
+    u = raya.imbalances(cost, pes=256, offsets=range(256))
+    assert [round(u[p], 4) for p in (0, 8, 16)] == [1.5846, 0.1316, 0.1802]
+    assert u.argmin() == 207 and round(u.min(), 4) == 0.0848
+
+
+def test_render_is_that_of_the_program(centre, tmp_path):
+    report = tmp_path / "r.json"
+    words = ["--size", "32", "--pes", "32", "--offset", "4", "--report", str(report), "-o", str(tmp_path / "i.png")]
+    subprocess.run([raya.program(), "render", str(SCENES / "centre.nff"), "-q", *words], check=True)
+    theirs, ours = json.loads(report.read_text()), raya.render(centre, **SMALL).report
+    assert ours.keys() == theirs.keys()
+    for member in ours.keys() - {"scene", "image", "device", "measured"}:
+        assert ours[member] == theirs[member], member
+    assert ours["image"]["hash"] == theirs["image"]["hash"]
+
+
+def test_loads_are_sums_of_costs(small):
+    owner = raya.owners(32, 32, offset=4, pes=32)
+    assert small.cost.dtype == np.uint64 and small.cost.shape == (32, 32)
+    by_owner = np.bincount(owner.ravel(), small.cost.ravel(), minlength=32)
+    assert (small.loads == by_owner).all() and (raya.loads(small.cost, offset=4, pes=32) == by_owner).all()
+    assert small.imbalance == pytest.approx(by_owner.max() / by_owner.mean() - 1, rel=1e-12)
+    assert small.speedup == pytest.approx(by_owner.sum() / by_owner.max(), rel=1e-12)
+
+
+def test_owners_of_the_cyclic_mapping():
+    """Kohata & Ito: the slot of a pixel is (column + p row) mod width; the cyclic fold deals slots out in turn."""
+    random = np.random.default_rng(SEED)
+    for _ in range(50):
+        width, height = random.integers(2, 60, 2)
+        pes, p = random.integers(1, width + 1), random.integers(0, width)
+        rows, columns = np.mgrid[:height, :width]
+        for sign in (1, -1):
+            slots = (columns + sign * p * rows) % width
+            if (raya.owners(width, height, offset=p, fold="cyclic", pes=pes) == slots % pes).all():
+                break
+        else:
+            pytest.fail(f"{width} x {height}, p = {p}, {pes} PEs, seed {SEED}")
+
+
+def test_imbalances_agree_with_loads():
+    random = np.random.default_rng(SEED)
+    for fold in ("cyclic", "block"):
+        cost = random.integers(1, 2**40, (24, 48)).astype(np.uint64)
+        u = raya.imbalances(cost, pes=12, offsets=range(48), fold=fold)
+        for p in range(48):
+            loads = raya.loads(cost, offset=p, pes=12, fold=fold).astype(float)
+            assert u[p] == pytest.approx(loads.max() / loads.mean() - 1, rel=1e-12), f"p = {p}, {fold}, seed {SEED}"
+
+
+def test_dynamic_schedule_gives_every_pixel_once(small):
+    run = raya.schedule(small.cost, "dynamic:16", pes=8)
+    assert run["loads"].sum() == small.cost.sum() and len(run["loads"]) == 8
+    assert run["makespan"] >= run["loads"].max() and run["requests"] >= 32 * 32 // 16
+
+
+def test_torus_and_its_packets(centre):
+    result = raya.render(centre, machine="torus", size=16, packets=True)
+    packets = result.packets
+    crossing = packets[packets["source"] != packets["destination"]]
+    assert len(crossing) and crossing["superstep"].max() < len(result.supersteps["cycles"])
+    assert set(np.unique(packets["kind"])) <= set(range(len(raya.PACKET_KINDS)))
+    assert result.loads.shape == (64,)
+    assert (result.step_cycles.sum(0) == result.loads).all()
+    assert (result.step_link_words.sum(0) == result.link_words).all()
+    assert raya.render(centre, size=16, machine="grande", format=result.report["machine"]["format"]).hash == result.hash
+
+
+def test_pixels_do_not_depend_on_machine_format_alone(centre):
+    hashes = {raya.render(centre, machine="grande", accel=accel, format="fp32", size=24).hash
+              for accel in ("none", "grid", "bvh")}
+    assert len(hashes) == 1
+    assert raya.render(centre, machine="grande", format="e8m15", size=24).hash not in hashes
+
+
+@pytest.mark.parametrize("options, words", [
+    ({"size": 0}, "--size"), ({"offset": 300}, "--offset"), ({"machine": "sap"}, "did you mean spa"),
+    ({"sise": 16}, "sise"), ({"format": "e9m4"}, "e9m4"), ({"pes": -1}, "--pes"), ({"frames": 3, "turn": 90}, "frames")])
+def test_bad_options_raise_value_error(centre, options, words):
+    with pytest.raises(ValueError, match=words):
+        raya.render(centre, **options)
+
+
+def test_message_is_the_command_lines(centre):
+    run = subprocess.run([raya.program(), "render", str(SCENES / "centre.nff"), "--machine", "sap", "-o", os.devnull],
+                         text=True, capture_output=True)
+    with pytest.raises(ValueError) as raised:
+        raya.render(centre, machine="sap")
+    assert run.returncode == 2 and str(raised.value).splitlines()[0] in run.stderr
+
+
+def test_no_such_device(centre):
+    with pytest.raises(raya.DeviceError):
+        raya.render(centre, device="no such device")
+
+
+def test_bad_scene_names_file_and_line(tmp_path):
+    (tmp_path / "bad.nff").write_text("b 0 0 0\ns 0 0\n")
+    with pytest.raises(raya.InputError, match=r"bad\.nff:3: the file ends"):
+        raya.load(tmp_path / "bad.nff")
+    with pytest.raises(ValueError):
+        raya.load(tmp_path / "missing.nff")
+
+
+def test_scene_survives_text_file_and_pickle(centre, tmp_path):
+    centre.save(tmp_path / "copy.nff")
+    again = raya.load(tmp_path / "copy.nff")
+    assert again.nff == centre.nff == pickle.loads(pickle.dumps(centre)).nff == raya.parse(centre.nff).nff
+    assert raya.render(again, **SMALL).hash == raya.render(centre, **SMALL).hash
+
+
+def test_arrays_outlive_their_result(centre):
+    image = raya.render(centre, **SMALL).image
+    copy = image.copy()
+    raya.render(centre, size=32, pes=32, offset=5)
+    assert (image == copy).all()
+
+
+def test_one_session_keeps_its_programs(centre):
+    session = raya.Session()
+    first, second = (session.render(centre, **SMALL) for _ in range(2))
+    assert first.hash == second.hash
+    assert raya.render(centre, session=session, **SMALL).hash == first.hash
+    assert set(session.device) == {"name", "platform", "version", "driver"}
+
+
+def test_progress_and_threads(centre):
+    """The GIL is free while the engine works: another thread counts on."""
+    shares, counted, done = [], [0], threading.Event()
+
+    def count():
+        while not done.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    raya.render(centre, size=256, progress=shares.append)
+    done.set()
+    thread.join()
+    assert shares == sorted(shares) and shares and 0 <= shares[0] and shares[-1] <= 1
+    assert counted[0] > 3
+
+
+def test_import_changes_neither_signals_nor_environment_and_render_no_signals():
+    script = """
+import ctypes, signal
+signal.signal(signal.SIGUSR1, lambda *_: None)
+def state():
+    lines = [line.split() for line in open('/proc/self/status') if line[:3] == 'Sig' and line[3] != 'Q']
+    signals = {name: int(bits, 16) & (2**31 - 1) for name, bits in lines}  # those above are the C library's own
+    variables, environ = [], ctypes.POINTER(ctypes.c_char_p).in_dll(ctypes.CDLL(None), 'environ')
+    while environ[len(variables)]:
+        variables.append(environ[len(variables)])
+    return signals, variables
+before = state()
+import raya
+assert state() == before, ('import', before, state())
+raya.render(raya.example('centre'), size=16)
+assert state()[0] == before[0], ('render', before, state())
+"""
+    environment = {**os.environ, "PYTHONPATH": str(Path(raya.__file__).parents[1])}
+    subprocess.run([sys.executable, "-c", script], check=True, env=environment)
+
+
+def test_ctrl_c_interrupts(centre):
+    def interrupt(share):
+        os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        raya.render(centre, size=256, progress=interrupt)
+    assert raya.render(centre, **SMALL).hash  # and the session still works
+
+
+def test_skipped_parts_of_a_scene_are_warned_of(tmp_path):
+    (tmp_path / "odd.nff").write_text(raya.example("centre").nff + "tex 1 2 3\n")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        raya.load(tmp_path / "odd.nff")
+    assert said or pytest.raises(ValueError, raya.load, tmp_path / "odd.nff", strict=True)
+
+
+def test_every_public_function_tells_what_it_returns():
+    silent = [name for name in dir(raya) if not name.startswith("_") and callable(getattr(raya, name))
+              and not (getattr(raya, name).__doc__ or "").strip()]
+    assert not silent
