@@ -74,8 +74,7 @@ def main(out, golden, wanted):
         if len(page["claims"]) != len(theirs):
             differences.append(f"{study}: {len(page['claims'])} claims instead of {len(theirs)}")
     for path in sorted(golden.glob("*.csv")):
-        study = next((s for s in sorted(wanted, key=len, reverse=True) if path.stem == s or path.stem.startswith(s + "-")), None)
-        if wanted and study is None:
+        if wanted and not any(path.stem == study or path.stem.startswith(study + "-") for study in wanted):
             continue
         if not (out / path.name).exists():
             differences.append(f"{path.name}: no such file")

@@ -2,6 +2,7 @@
 import json
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -114,7 +115,8 @@ def test_pixels_do_not_depend_on_machine_format_alone(centre):
 
 @pytest.mark.parametrize("options, words", [
     ({"size": 0}, "--size"), ({"offset": 300}, "--offset"), ({"machine": "sap"}, "did you mean spa"),
-    ({"sise": 16}, "sise"), ({"format": "e9m4"}, "e9m4"), ({"pes": -1}, "--pes"), ({"frames": 3, "turn": 90}, "frames")])
+    ({"sise": 16}, "sise"), ({"format": "e9m4"}, "e9m4"), ({"pes": -1}, "--pes"),
+    ({"frames": 3, "turn": 90}, "frames")])
 def test_bad_options_raise_value_error(centre, options, words):
     with pytest.raises(ValueError, match=words):
         raya.render(centre, **options)
@@ -223,3 +225,31 @@ def test_every_public_function_tells_what_it_returns():
     silent = [name for name in dir(raya) if not name.startswith("_") and callable(getattr(raya, name))
               and not (getattr(raya, name).__doc__ or "").strip()]
     assert not silent
+
+
+def test_type_stubs_name_what_there_is():
+    """Every name and argument of host/python/raya/_engine.pyi, and no other."""
+    import ast
+    import inspect
+
+    tree = ast.parse((Path(__file__).parents[2] / "host/python/raya/_engine.pyi").read_text())
+
+    def public(body):
+        named = [node for node in body if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
+        assigned = [node.target.id for node in body if isinstance(node, ast.AnnAssign)]
+        return {name for name in [node.name for node in named] + assigned if not name.startswith("_")}
+
+    def there(owner):
+        return {name for name, value in vars(owner).items() if not name.startswith("_")}
+
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    assert public(tree.body) == there(raya._engine)
+    for name in ("Scene", "Result", "Session"):
+        assert public(classes[name].body) == there(getattr(raya._engine, name)), name
+    assert public(classes["_Generators"].body) == there(raya.generate)
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.name != "render":
+            declared = re.match(r"\w+\((.*)\)", getattr(raya._engine, node.name).__doc__).group(1)
+            names = re.findall(r"(?:^|, )(\w+):", declared)
+            assert names == [argument.arg for argument in node.args.args], node.name
+    assert inspect.signature(raya.render).parameters.keys() == {"scene", "progress", "session", "options"}
