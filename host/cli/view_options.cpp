@@ -18,6 +18,8 @@ constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e30 i
 constexpr const char* kColour = "must be three numbers R,G,B from 0 to 1e9; 1 is full intensity";
 constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, colours from 0 to 1e9";
 
+constexpr std::size_t kShown = 60;  // bytes of a value; fmt's precision does not count bytes that are no UTF-8
+
 /// The numbers between commas; none where one of them is no number, or none that can be traced.
 std::vector<double> numbers_of(std::string_view text) {
     std::vector<double> numbers;
@@ -34,7 +36,7 @@ std::vector<double> numbers_of(std::string_view text) {
 }
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text, const char* legal) {
-    throw UserError(fmt::format("{} {:.60}: {}", option, text, legal));
+    throw UserError(fmt::format("{} {}: {}", option, text.substr(0, kShown), legal));
 }
 
 Vec3 vector_of(const std::string& option, const std::string& text, const char* legal) {
@@ -57,7 +59,7 @@ std::string viewpoint_text(const ViewOptions& v) {
     std::string text;
     for (const auto& [option, value] : v.words())
         if (option != "--background" && option != "--light")
-            text += fmt::format("{}{} {:.60}", text.empty() ? "" : " ", option, value);
+            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value.substr(0, kShown));
     return text;
 }
 

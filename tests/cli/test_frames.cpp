@@ -93,8 +93,9 @@ TEST_CASE("a path has a camera in each line", "[cli][frames]") {
         CHECK_THROWS_WITH(read_camera_path(path, view), Catch::Contains(message));
     }
     CHECK_THROWS_WITH(read_camera_path(folder / "none.txt", view), Catch::Contains("--camera-path"));
-    for (const char* name : {"", "from ", "angle ", "from 1,2,"}) {
-        write_whole_file(path, name + std::string(5'000'000, '1') + "x\n");
+    // 0xbf is no UTF-8.
+    for (const char* name : {"", "from ", "angle ", "from 1,2,", "up \xbf"}) {
+        write_whole_file(path, name + std::string(5'000'000, name[0] == 'u' ? '\xbf' : '1') + "x\n");
         try {
             read_camera_path(path, view);
             FAIL("accepted");
