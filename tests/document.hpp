@@ -1,8 +1,8 @@
-// A JSON document as another program reads it: what tests look at, whatever host/files/json.hpp makes of it.
+// A JSON document as another program reads it: what tests look at, whatever host/base/json.hpp makes of it.
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 
 namespace raya {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 
 namespace raya {
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "host/files/module.hpp"
+#include "host/base/module.hpp"
 #include "tests/kernel_cache.hpp"
 #include "tests/paths.h"
 

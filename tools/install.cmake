@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 set(doc ${CMAKE_INSTALL_DATADIR}/doc/raya)
 
 install(TARGETS raya RUNTIME)
-# Beside the program's own name: where host/files/module.cpp looks, which no multiarch folder is.
+# Beside the program's own name: where host/base/module.cpp looks, which no multiarch folder is.
 install(TARGETS raya_pictures LIBRARY DESTINATION lib/raya)
 if(TARGET raya_mpi)
     install(TARGETS raya_mpi LIBRARY DESTINATION lib/raya)

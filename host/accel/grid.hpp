@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/accel/partition.hpp"
-#include "host/machine/accel.hpp"
+#include "host/model/accel.hpp"
 
 namespace raya {
 

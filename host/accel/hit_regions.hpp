@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
 
 namespace raya {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "host/error.hpp"
-#include "host/machine/accel.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/accel.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/grid.h"
 

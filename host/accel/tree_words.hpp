@@ -1,7 +1,7 @@
 // The tree that a PE of the ring machine walks its rays through: built over a job's objects, and packed behind it.
 #pragma once
-#include "host/machine/accel.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/accel.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
 
 namespace raya {

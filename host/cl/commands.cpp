@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/base/progress.hpp"
+#include "host/base/verbosity.hpp"
 #include "host/cl/error_names.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/verbosity.hpp"
 
 namespace raya {
 namespace {

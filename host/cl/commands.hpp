@@ -40,7 +40,7 @@ class Session {
     explicit Session(const cl::Device& device, Timing timing = Timing::kOn, Transfers transfers = Transfers::kOfDevice);
     Session(Session&&) = default;  // not copied: a copy would report the same commands twice
     /// Waits for all commands, those that an exception has overtaken too; tells their times to who wants to know
-    /// (host/files/verbosity.hpp).
+    /// (host/base/verbosity.hpp).
     ~Session();
 
     const DeviceInfo& device() const { return info_; }
@@ -167,7 +167,7 @@ class Session {
     /// From now on compiling() says what it does.
     void announce_compiling() { announces_ = true; }
 
-    /// To be kept while kernels are compiled and first launched, see announce_compiling() of host/files/progress.hpp.
+    /// To be kept while kernels are compiled and first launched, see announce_compiling() of host/base/progress.hpp.
     [[nodiscard]] std::jthread compiling() const;
 
     /// A step of the host, from now to the end of the scope that it is kept in; for the log of observe(), else nothing.

@@ -8,11 +8,11 @@
 #include <cstdlib>
 #include <optional>
 
+#include "host/base/module.hpp"
+#include "host/base/verbosity.hpp"
 #include "host/cl/driver_cache.hpp"
 #include "host/cl/driver_call.hpp"
 #include "host/cl/error_names.hpp"
-#include "host/files/module.hpp"
-#include "host/files/verbosity.hpp"
 
 namespace raya {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <system_error>
 
+#include "host/base/module.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/files/module.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;

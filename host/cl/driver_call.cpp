@@ -16,8 +16,8 @@
 #include <thread>
 #include <utility>
 
+#include "host/base/interruption.hpp"
 #include "host/error.hpp"
-#include "host/files/interruption.hpp"
 
 namespace raya {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <ctime>
 
-#include "host/files/verbosity.hpp"
+#include "host/base/verbosity.hpp"
 
 namespace raya {
 

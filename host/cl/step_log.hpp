@@ -27,7 +27,7 @@ struct HostStep {
 
 class StepLog {
   public:
-    /// A step: from its making to the end of its scope, and told then to who wants to know (host/files/verbosity.hpp).
+    /// A step: from its making to the end of its scope, and told then to who wants to know (host/base/verbosity.hpp).
     /// Without a log it does nothing else.
     class Step {
       public:

@@ -7,6 +7,11 @@
 #include <memory>
 #include <optional>
 
+#include "host/base/progress.hpp"
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/cli/bench_ranks.hpp"
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/bench_tables.hpp"
@@ -22,12 +27,7 @@
 #include "host/cli/tuned_option.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/kernels/kernel_options.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/report/bench_compare.hpp"
 #include "host/report/render_report.hpp"
 

@@ -8,13 +8,13 @@
 #include <optional>
 #include <set>
 
+#include "host/base/progress.hpp"
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/temporary_folder.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/temporary_folder.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/report/table.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/nff_writer.hpp"

@@ -6,10 +6,10 @@
 #include <map>
 #include <memory>
 
+#include "host/cl/device_peak.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
-#include "host/kernels/device_peak.hpp"
 #include "host/report/render_report.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"

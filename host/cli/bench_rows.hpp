@@ -19,7 +19,7 @@ struct BenchRow {
     BenchMeasurement said{};  // all but the times
     EventCounts events{};     // of the first image
     double build_s = 0;
-    std::string tuned{};                // where lanes and group come from (host/kernels/tuned.hpp)
+    std::string tuned{};                // where lanes and group come from (host/cl/tuned.hpp)
     bool flushed = false;               // its kernel takes denormal numbers for 0, and may so make another image
     std::function<double()> image_s{};  // renders one more image: how long it took
     std::optional<KernelWork> work{};   // of one image, where the row is one kernel's

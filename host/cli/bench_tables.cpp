@@ -6,8 +6,8 @@
 #include <array>
 #include <set>
 
-#include "host/files/say.hpp"
-#include "host/kernels/operation_rates.hpp"
+#include "host/base/say.hpp"
+#include "host/cl/operation_rates.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {

@@ -9,16 +9,16 @@
 #include <sstream>
 #include <string_view>
 
+#include "host/base/say.hpp"
+#include "host/base/utc_time.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
-#include "host/files/say.hpp"
-#include "host/files/utc_time.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/report/table.hpp"
 #include "host/tune/store.hpp"
 #include "host/tune/t4_report.hpp"

@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
+#include "host/base/read_file.hpp"
+#include "host/base/standard_streams.hpp"
 #include "host/cli/view_options.hpp"
 #include "host/error.hpp"
-#include "host/files/read_file.hpp"
-#include "host/files/standard_streams.hpp"
 #include "host/scene/nff_tokens.hpp"
 
 namespace raya {

@@ -2,7 +2,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 
-#include "host/manual/command_text.hpp"
+#include "host/cli/command_text.hpp"
 
 namespace raya {
 

@@ -17,6 +17,9 @@
 #include <typeinfo>
 #include <vector>
 
+#include "host/base/interruption.hpp"
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
 #include "host/cl/driver_call.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
@@ -24,9 +27,6 @@
 #include "host/cli/parse_failure.hpp"
 #include "host/cli/verbosity_options.hpp"
 #include "host/error.hpp"
-#include "host/files/interruption.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/version.hpp"
 

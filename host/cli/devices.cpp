@@ -2,10 +2,10 @@
 #include <fmt/core.h>
 
 #include "host/cl/device.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/error.hpp"
-#include "host/kernels/kernel_options.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {

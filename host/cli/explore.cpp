@@ -5,6 +5,11 @@
 #include <memory>
 #include <optional>
 
+#include "host/base/progress.hpp"
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
@@ -17,12 +22,7 @@
 #include "host/error.hpp"
 #include "host/explore/explorer.hpp"
 #include "host/explore/figures.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/version.hpp"

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <map>
 
+#include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
+#include "host/cl/kernel_source.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/kernels/kernel_source.hpp"
 
 namespace raya {
 namespace {

@@ -11,7 +11,7 @@
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/scene/turn.hpp"
 
 namespace raya {

@@ -9,10 +9,10 @@
 #include <cerrno>
 #include <optional>
 
+#include "host/base/bytes_hash.hpp"
+#include "host/base/read_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/files/bytes_hash.hpp"
-#include "host/files/read_file.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/version.hpp"
 
 namespace raya {

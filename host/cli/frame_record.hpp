@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 
 namespace raya {
 

@@ -5,13 +5,13 @@
 
 #include <memory>
 
+#include "host/base/progress.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/scene/nff_writer.hpp"
 
 namespace raya {

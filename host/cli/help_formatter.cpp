@@ -3,9 +3,9 @@
 #include <memory>
 #include <utility>
 
+#include "host/base/terminal.hpp"
 #include "host/cli/command_tree.hpp"
-#include "host/files/terminal.hpp"
-#include "host/manual/help_text.hpp"
+#include "host/cli/help_text.hpp"
 
 namespace raya {
 

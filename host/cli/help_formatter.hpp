@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/manual/command_text.hpp"
+#include "host/cli/command_text.hpp"
 
 namespace raya {
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <memory>
 
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
@@ -12,8 +14,6 @@
 #include "host/cli/scene_input.hpp"
 #include "host/cli/scene_needs.hpp"
 #include "host/error.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
 #include "host/scene/scene_box.hpp"
 #include "host/version.hpp"
 

@@ -7,14 +7,14 @@
 #include <filesystem>
 #include <fstream>
 
+#include "host/base/read_file.hpp"
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/files/read_file.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
 
 namespace raya {
 namespace {

@@ -7,6 +7,10 @@
 #include <memory>
 #include <optional>
 
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
@@ -14,10 +18,6 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"
 #include "host/error.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/page/html_document.hpp"
 #include "host/report/bench_report.hpp"
 #include "host/report/render_report.hpp"

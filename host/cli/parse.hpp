@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/accel/grid.hpp"
-#include "host/machine/image_size.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/image_size.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"

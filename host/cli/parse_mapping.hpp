@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/dynamic_plan.hpp"
-#include "host/machine/mapping_rule.hpp"
+#include "host/model/dynamic_plan.hpp"
+#include "host/model/mapping_rule.hpp"
 
 namespace raya {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/profile.hpp"
-#include "host/files/json.hpp"
 #include "host/ranks/ranks.hpp"
 
 namespace raya {

@@ -2,15 +2,15 @@
 
 #include <fmt/core.h>
 
+#include "host/base/json.hpp"
+#include "host/base/say.hpp"
+#include "host/base/whole_file.hpp"
+#include "host/cl/device_peak.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/say.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/image/plain_png.hpp"
 #include "host/image/preview.hpp"
-#include "host/kernels/device_peak.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/report/profile_table.hpp"
 

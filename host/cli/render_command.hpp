@@ -3,6 +3,9 @@
 #pragma once
 #include <string>
 
+#include "host/base/progress.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/verbosity.hpp"
 #include "host/cli/frame_options.hpp"
 #include "host/cli/keep_options.hpp"
 #include "host/cli/render_options.hpp"
@@ -11,9 +14,6 @@
 #include "host/cli/scene_input.hpp"
 #include "host/cli/tone_options.hpp"
 #include "host/cli/torus_options.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/verbosity.hpp"
 #include "host/image/image_io.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <set>
 
+#include "host/base/bytes_hash.hpp"
+#include "host/base/say.hpp"
 #include "host/cl/program.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/error.hpp"
-#include "host/files/bytes_hash.hpp"
-#include "host/files/say.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/scene/nff_writer.hpp"
 
 namespace raya {

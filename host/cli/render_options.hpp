@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/cli/view_options.hpp"
-#include "host/machine/image_size.hpp"
+#include "host/model/image_size.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/scene/scene.hpp"
 

@@ -1,10 +1,10 @@
 // raya render on a ring machine: pixels are divided among the PEs.
 #include <optional>
 
+#include "host/base/progress.hpp"
 #include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/files/progress.hpp"
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/ring/ring_trace.hpp"

@@ -4,7 +4,7 @@
 
 #include "host/cl/device.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 
 namespace raya {
 

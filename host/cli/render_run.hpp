@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "host/base/progress.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/render_watch.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/tuned_option.hpp"
-#include "host/files/progress.hpp"
 #include "host/ranks/ranks.hpp"
 
 namespace raya {

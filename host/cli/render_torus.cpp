@@ -3,10 +3,10 @@
 #include <numeric>
 #include <optional>
 
+#include "host/base/progress.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/torus/async_machine.hpp"
 #include "host/torus/history_recorder.hpp"
 #include "host/torus/packet_trace.hpp"

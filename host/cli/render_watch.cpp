@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "host/base/standard_streams.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cl/clock_anchor.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/report/session_trace.hpp"
 #include "host/version.hpp"
 

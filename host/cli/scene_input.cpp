@@ -6,12 +6,12 @@
 #include <set>
 #include <sstream>
 
+#include "host/base/standard_streams.hpp"
+#include "host/base/verbosity.hpp"
 #include "host/cl/program.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 
 namespace raya {
 

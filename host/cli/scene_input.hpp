@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/scene.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "host/cli/parse.hpp"
-#include "host/machine/does_not_fit.hpp"
+#include "host/model/does_not_fit.hpp"
 #include "host/ring/pe_memory.hpp"
 #include "host/ring/ring_job.hpp"
 #include "host/ring/ring_plan.hpp"

@@ -6,6 +6,12 @@
 #include <memory>
 #include <optional>
 
+#include "host/base/json.hpp"
+#include "host/base/progress.hpp"
+#include "host/base/say.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
@@ -15,12 +21,6 @@
 #include "host/cli/studies.hpp"
 #include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/say.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/report/table.hpp"
 #include "host/study/formats_report.hpp"
 #include "host/study/formats_study.hpp"

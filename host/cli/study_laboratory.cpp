@@ -9,6 +9,10 @@
 #include <memory>
 #include <optional>
 
+#include "host/base/progress.hpp"
+#include "host/base/say.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -17,10 +21,6 @@
 #include "host/cli/studies.hpp"
 #include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
-#include "host/files/progress.hpp"
-#include "host/files/say.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/study/document.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/studies.hpp"

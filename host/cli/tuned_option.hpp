@@ -1,7 +1,7 @@
 // Whether a command takes what raya bench --tune has kept for its device.
 #pragma once
+#include "host/cl/tuned.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/kernels/tuned.hpp"
 
 namespace raya {
 

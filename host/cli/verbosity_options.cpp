@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "host/base/verbosity.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/files/verbosity.hpp"
 #include "host/ranks/ranks.hpp"
 
 namespace raya {

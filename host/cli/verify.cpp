@@ -6,6 +6,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "host/base/json.hpp"
+#include "host/base/say.hpp"
+#include "host/base/verbosity.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
@@ -14,11 +18,7 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/say.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/verify/worker.hpp"
 #include "host/version.hpp"

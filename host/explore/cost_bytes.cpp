@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/files/gzip.hpp"
+#include "host/base/gzip.hpp"
 
 namespace raya {
 

@@ -8,12 +8,12 @@
 #include <numeric>
 #include <string_view>
 
+#include "host/base/base64.hpp"
+#include "host/base/json.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/explore/cost_bytes.hpp"
 #include "host/explore/figures.hpp"
-#include "host/files/base64.hpp"
-#include "host/files/json.hpp"
 #include "host/image/plain_png.hpp"
 #include "host/page/html.hpp"
 #include "host/page/html_document.hpp"

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "host/image/image.hpp"
-#include "host/machine/image_size.hpp"
-#include "host/machine/machine.hpp"
+#include "host/model/image_size.hpp"
+#include "host/model/machine.hpp"
 #include "host/ring/cost_image.hpp"
 #include "kernels/shared/mapping.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/ring/exchange_plan.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/schedule.hpp"

@@ -8,7 +8,7 @@
 #include <new>
 #include <span>
 
-#include "host/files/bytes_hash.hpp"
+#include "host/base/bytes_hash.hpp"
 
 namespace raya {
 namespace {

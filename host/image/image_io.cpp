@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "host/base/module.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/files/module.hpp"
-#include "host/files/standard_streams.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/image/pfm.hpp"
 #include "host/image/ppm.hpp"
 

@@ -1,12 +1,12 @@
 // The Python module raya._engine: renders, scenes and loads with numpy arrays. The package around it is raya/.
-#include "host/files/module.hpp"
+#include "host/base/module.hpp"
 
 #include <dlfcn.h>
 #include <pybind11/pybind11.h>
 
+#include "host/base/verbosity.hpp"
 #include "host/error.hpp"
-#include "host/files/verbosity.hpp"
-#include "host/machine/does_not_fit.hpp"
+#include "host/model/does_not_fit.hpp"
 #include "host/python/session.hpp"
 #include "host/torus/standstill.hpp"
 #include "host/version.hpp"

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <map>
 
+#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/error.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/image/plain_png.hpp"
-#include "host/machine/t805.hpp"
+#include "host/model/t805.hpp"
 #include "host/python/session.hpp"
 #include "host/torus/async_machine.hpp"
 #include "host/torus/node_buffers.hpp"

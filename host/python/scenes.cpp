@@ -6,12 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "host/base/whole_file.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/view_options.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/machine/machine.hpp"
+#include "host/model/machine.hpp"
 #include "host/python/session.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/nff_reader.hpp"

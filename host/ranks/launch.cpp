@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "host/base/module.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/files/module.hpp"
 #include "host/ranks/deadline.hpp"
 #include "host/ranks/mpi_module.hpp"
 #include "host/version.hpp"

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "host/files/module.hpp"
-#include "host/files/program.hpp"
+#include "host/base/module.hpp"
+#include "host/base/program.hpp"
 #include "host/ranks/mpi_module.hpp"
 
 namespace raya {

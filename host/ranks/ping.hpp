@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "host/ranks/ranks.hpp"
 
 namespace raya {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "host/files/interruption.hpp"
-#include "host/files/say.hpp"
+#include "host/base/interruption.hpp"
+#include "host/base/say.hpp"
 
 namespace raya {
 namespace {

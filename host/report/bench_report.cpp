@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "host/files/json.hpp"
-#include "host/files/standard_streams.hpp"
+#include "host/base/json.hpp"
+#include "host/base/standard_streams.hpp"
 
 namespace raya {
 namespace {

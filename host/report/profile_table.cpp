@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {

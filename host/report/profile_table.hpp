@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/cl/profile.hpp"
-#include "host/files/json.hpp"
 #include "host/report/render_report.hpp"
 
 namespace raya {

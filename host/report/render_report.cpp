@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <set>
 
-#include "host/files/base64.hpp"
-#include "host/files/json.hpp"
-#include "host/machine/budget.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/base/base64.hpp"
+#include "host/base/json.hpp"
+#include "host/model/budget.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/report/profile_table.hpp"
 
 namespace raya {

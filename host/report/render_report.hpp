@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/cl/profile.hpp"
-#include "host/files/json.hpp"
-#include "host/machine/communication.hpp"
-#include "host/machine/load.hpp"
-#include "host/machine/machine.hpp"
-#include "host/machine/time_model.hpp"
+#include "host/model/communication.hpp"
+#include "host/model/load.hpp"
+#include "host/model/machine.hpp"
+#include "host/model/time_model.hpp"
 #include "host/report/roofline.hpp"
 #include "host/report/torus_report.hpp"
 #include "host/scene/nff_reader.hpp"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "host/files/json.hpp"
-#include "host/machine/budget.hpp"
+#include "host/base/json.hpp"
+#include "host/model/budget.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {

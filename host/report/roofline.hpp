@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "host/base/json.hpp"
+#include "host/cl/peak.hpp"
 #include "host/cl/profile.hpp"
-#include "host/files/json.hpp"
-#include "host/kernels/peak.hpp"
-#include "host/machine/machine.hpp"
+#include "host/model/machine.hpp"
 
 namespace raya {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/report/table.hpp"
 #include "host/report/view_json.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "host/files/json.hpp"
-#include "host/machine/accel.hpp"
+#include "host/base/json.hpp"
+#include "host/model/accel.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/nff_remark.hpp"
 #include "host/scene/scene.hpp"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 
 namespace raya {
 namespace {

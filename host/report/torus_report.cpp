@@ -4,9 +4,9 @@
 
 #include <numeric>
 
-#include "host/files/json.hpp"
-#include "host/machine/budget.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/base/json.hpp"
+#include "host/model/budget.hpp"
+#include "host/model/unit_text.hpp"
 
 namespace raya {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "host/files/json.hpp"
-#include "host/machine/machine.hpp"
-#include "host/machine/t805.hpp"
-#include "host/machine/time_model.hpp"
+#include "host/base/json.hpp"
+#include "host/model/machine.hpp"
+#include "host/model/t805.hpp"
+#include "host/model/time_model.hpp"
 #include "kernels/shared/packet.h"
 #include "kernels/shared/torus.h"
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "host/files/gzip.hpp"
+#include "host/base/gzip.hpp"
 
 namespace raya {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 
 namespace raya {
 

@@ -1,6 +1,6 @@
 // How a scene is seen, as reports tell it.
 #pragma once
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/page/html.hpp"
 #include "host/report_page/read.hpp"
 #include "host/report_page/render_parts.hpp"

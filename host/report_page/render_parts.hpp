@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "kernels/shared/mapping.h"
 
 namespace raya {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/page/drawing.hpp"
 #include "host/page/html.hpp"
 #include "host/report_page/read.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "kernels/shared/mapping.h"
 
 namespace raya {

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "host/error.hpp"
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/ring/mapping.hpp"
 
 namespace raya {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "host/machine/time_model.hpp"
+#include "host/model/time_model.hpp"
 #include "host/ring/exchange_plan.hpp"
 #include "kernels/shared/neighbours.h"
 

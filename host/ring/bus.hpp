@@ -5,7 +5,7 @@
 #include <span>
 
 #include "host/cl/commands.hpp"
-#include "host/machine/communication.hpp"
+#include "host/model/communication.hpp"
 #include "host/ring/pe_segment.hpp"
 
 namespace raya {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "host/kernels/kernels.hpp"
+#include "host/cl/kernels.hpp"
 #include "host/ring/exchange_setup.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 

@@ -1,6 +1,6 @@
 // The 3 x 3 filter over ring or bus (kernels/ring/filter.cl).
 #pragma once
-#include "host/kernels/kernels.hpp"
+#include "host/cl/kernels.hpp"
 #include "host/ring/exchange_setup.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "host/machine/image_size.hpp"
-#include "host/machine/mapping_rule.hpp"
+#include "host/model/image_size.hpp"
+#include "host/model/mapping_rule.hpp"
 
 namespace raya {
 

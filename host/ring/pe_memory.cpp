@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "host/machine/does_not_fit.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/does_not_fit.hpp"
+#include "host/model/unit_text.hpp"
 
 namespace raya {
 namespace {

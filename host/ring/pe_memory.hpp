@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/machine/machine.hpp"
+#include "host/model/machine.hpp"
 #include "host/ring/antialias.hpp"
 
 namespace raya {

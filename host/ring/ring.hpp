@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/machine/communication.hpp"
+#include "host/model/communication.hpp"
 #include "host/ring/pe_segment.hpp"
 #include "host/ring/route.hpp"
 

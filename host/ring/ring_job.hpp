@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "host/cl/commands.hpp"
-#include "host/machine/accel.hpp"
+#include "host/model/accel.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/scene/length_scale.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/bytes_hash.hpp"
 #include "host/error.hpp"
-#include "host/files/bytes_hash.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/version.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/kernels/tuned.hpp"
+#include "host/cl/tuned.hpp"
 #include "host/ring/mapping.hpp"
 #include "kernels/shared/bvh.h"
 

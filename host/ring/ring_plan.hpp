@@ -1,7 +1,7 @@
 // How a render on a ring machine is set up on a device: what is chosen where the user leaves the choice.
 #pragma once
 #include "host/cl/device_info.hpp"
-#include "host/kernels/kernel_options.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/ring/pe_memory.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/ring/tracer.hpp"

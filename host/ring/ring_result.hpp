@@ -7,10 +7,10 @@
 
 #include "host/cl/profile.hpp"
 #include "host/image/image.hpp"
-#include "host/machine/accel.hpp"
-#include "host/machine/communication.hpp"
-#include "host/machine/load.hpp"
-#include "host/machine/machine.hpp"
+#include "host/model/accel.hpp"
+#include "host/model/communication.hpp"
+#include "host/model/load.hpp"
+#include "host/model/machine.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/ring/cost_image.hpp"
 #include "host/ring/pe_memory.hpp"
@@ -48,7 +48,7 @@ struct RingResult {
     RankTraffic traffic;                // of this rank, while it rendered
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
-    std::string tuned;  // where lanes, group and what goes with them come from (host/kernels/tuned.hpp)
+    std::string tuned;  // where lanes, group and what goes with them come from (host/cl/tuned.hpp)
     // Measured on the host: to make the grid or tree; kernel build; everything after it.
     double accel_s = 0, build_s = 0, render_s = 0;
     double earlier_s = 0;  // of render_s what runs took whose state this one went on with

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "host/kernels/kernel_options.hpp"
-#include "host/machine/accel.hpp"
-#include "host/machine/machine.hpp"
+#include "host/cl/kernel_options.hpp"
+#include "host/model/accel.hpp"
+#include "host/model/machine.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/mapping.h"

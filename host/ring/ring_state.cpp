@@ -6,8 +6,8 @@
 #include <cstring>
 #include <span>
 
+#include "host/base/bytes_hash.hpp"
 #include "host/error.hpp"
-#include "host/files/bytes_hash.hpp"
 
 namespace raya {
 namespace {

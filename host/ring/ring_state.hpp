@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "host/files/json.hpp"
-#include "host/machine/communication.hpp"
+#include "host/base/json.hpp"
+#include "host/model/communication.hpp"
 
 namespace raya {
 

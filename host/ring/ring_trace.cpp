@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/report/traced_pes.hpp"
 #include "host/ring/mapping.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/dynamic_plan.hpp"
-#include "host/machine/load.hpp"
+#include "host/model/dynamic_plan.hpp"
+#include "host/model/load.hpp"
 #include "host/ring/cost_image.hpp"
 #include "kernels/shared/mapping.h"
 

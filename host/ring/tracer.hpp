@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "host/base/progress.hpp"
+#include "host/cl/kernels.hpp"
 #include "host/cl/launch_guard.hpp"
-#include "host/files/progress.hpp"
-#include "host/kernels/kernels.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/ring/pe_segment.hpp"
 #include "host/scene/packer.hpp"

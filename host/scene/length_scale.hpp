@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

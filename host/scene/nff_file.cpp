@@ -1,8 +1,8 @@
 #include <fmt/core.h>
 
+#include "host/base/read_file.hpp"
+#include "host/base/standard_streams.hpp"
 #include "host/error.hpp"
-#include "host/files/read_file.hpp"
-#include "host/files/standard_streams.hpp"
 #include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_reader.hpp"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/machine/image_size.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/image_size.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/job.h"
 

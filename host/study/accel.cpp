@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/files/program.hpp"
+#include "host/base/program.hpp"
 #include "host/scene/generate.hpp"
 #include "host/study/accel_rows.hpp"
 #include "host/study/prose.hpp"

@@ -6,9 +6,9 @@
 #include <memory>
 #include <numeric>
 
-#include "host/machine/accel.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
+#include "host/model/accel.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/nff_writer.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/machine/machine.hpp"
+#include "host/model/machine.hpp"
 #include "host/report/render_report.hpp"
 #include "host/scene/scene.hpp"
 #include "host/study/measured.hpp"

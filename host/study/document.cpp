@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "host/files/read_file.hpp"
-#include "host/files/whole_file.hpp"
+#include "host/base/read_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/page/html.hpp"
 #include "host/page/html_document.hpp"
 #include "host/study/conclusion.hpp"

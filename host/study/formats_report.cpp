@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "host/report/text_tables.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/rows.hpp"

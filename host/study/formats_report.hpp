@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "host/study/formats_study.hpp"
 
 namespace raya {

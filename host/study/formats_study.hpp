@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/scene.hpp"
 #include "host/study/image_difference.hpp"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "host/machine/machine.hpp"
-#include "host/machine/t805.hpp"
+#include "host/model/machine.hpp"
+#include "host/model/t805.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/study/arrays.hpp"
 #include "host/torus/topology.hpp"

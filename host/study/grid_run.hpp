@@ -5,7 +5,7 @@
 
 #include "host/accel/partition.hpp"
 #include "host/cl/commands.hpp"
-#include "host/machine/machine.hpp"
+#include "host/model/machine.hpp"
 #include "host/report/render_report.hpp"
 #include "host/scene/packer.hpp"
 #include "host/study/measured.hpp"

@@ -3,8 +3,8 @@
 #include <array>
 #include <numeric>
 
-#include "host/machine/t805.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/t805.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"
 #include "host/study/studies.hpp"

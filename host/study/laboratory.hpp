@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/machine/machine.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/machine.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ranks/ping.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/ring/cost_image.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "host/study/scenes.hpp"
 
 namespace raya {

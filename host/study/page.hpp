@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 
 namespace raya {
 

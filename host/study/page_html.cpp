@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "host/files/base64.hpp"
+#include "host/base/base64.hpp"
 #include "host/page/html.hpp"
 #include "host/study/html_figure.hpp"
 #include "host/study/page_text.hpp"

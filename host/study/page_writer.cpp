@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/report/text_tables.hpp"
 #include "host/study/conclusion.hpp"
 #include "host/study/page_text.hpp"

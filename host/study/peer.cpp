@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "host/files/program.hpp"
+#include "host/base/program.hpp"
 
 namespace raya {
 namespace {

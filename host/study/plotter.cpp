@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "host/base/program.hpp"
 #include "host/embedded.hpp"
-#include "host/files/program.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "host/files/temporary_folder.hpp"
+#include "host/base/temporary_folder.hpp"
 
 namespace raya {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "host/ranks/mpirun.hpp"
 #include "host/ranks/ping.hpp"
 

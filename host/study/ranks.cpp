@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "host/files/temporary_folder.hpp"
-#include "host/files/whole_file.hpp"
+#include "host/base/temporary_folder.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "host/study/measured.hpp"
 #include "host/study/other_load.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/files/program.hpp"
+#include "host/base/program.hpp"
 #include "host/study/peer.hpp"
 #include "host/study/prose.hpp"
 #include "host/study/rows.hpp"

@@ -3,8 +3,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "host/files/temporary_folder.hpp"
-#include "host/files/whole_file.hpp"
+#include "host/base/temporary_folder.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/study/peer.hpp"
 #include "host/torus/simgrid_files.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/study/laboratory.hpp"
 #include "host/study/paper.hpp"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "host/machine/does_not_fit.hpp"
+#include "host/model/does_not_fit.hpp"
 #include "host/ring/route.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/time_model.hpp"
+#include "host/model/time_model.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/scene.hpp"

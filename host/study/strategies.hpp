@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/machine/machine.hpp"
+#include "host/model/machine.hpp"
 #include "host/ring/schedule.hpp"
 
 namespace raya {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/machine/t805.hpp"
+#include "host/model/t805.hpp"
 #include "host/report/render_report.hpp"
 #include "host/scene/generate.hpp"
 #include "host/torus/async_machine.hpp"

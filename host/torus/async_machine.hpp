@@ -26,8 +26,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/machine/t805.hpp"
-#include "host/machine/time_model.hpp"
+#include "host/model/t805.hpp"
+#include "host/model/time_model.hpp"
 #include "host/torus/history.hpp"
 #include "kernels/shared/torus.h"
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "host/error.hpp"
-#include "host/machine/unit_text.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/scene/word_records.hpp"
 #include "host/torus/bisection.hpp"
 #include "host/torus/topology.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "host/machine/does_not_fit.hpp"
+#include "host/model/does_not_fit.hpp"
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/node_trial.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/kernels/kernels.hpp"
+#include "host/cl/kernels.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/machine/t805.hpp"
+#include "host/model/t805.hpp"
 #include "host/torus/history.hpp"
 #include "host/torus/node_work.hpp"
 #include "host/torus/ray_numbers.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/cl/device_info.hpp"
-#include "host/kernels/kernel_options.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/torus/node_buffers.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/node_share.hpp"

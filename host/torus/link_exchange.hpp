@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/kernels/kernels.hpp"
+#include "host/cl/kernels.hpp"
 #include "host/ranks/transport.hpp"
 #include "host/torus/node_share.hpp"
 #include "host/torus/node_status.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "host/kernels/kernels.hpp"
+#include "host/cl/kernels.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "host/accel/partition.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
 
 namespace raya {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/files/gzip.hpp"
+#include "host/base/gzip.hpp"
 #include "host/torus/packet_record.hpp"
 #include "host/torus/ray_numbers.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
+#include "host/cl/tuned.hpp"
 #include "host/error.hpp"
-#include "host/kernels/tuned.hpp"
 #include "host/scene/word_records.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/windows.hpp"

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "host/cl/device_info.hpp"
-#include "host/kernels/kernel_options.hpp"
-#include "host/machine/image_size.hpp"
+#include "host/cl/kernel_options.hpp"
+#include "host/model/image_size.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"

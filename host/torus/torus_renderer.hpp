@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "host/base/progress.hpp"
 #include "host/cl/commands.hpp"
-#include "host/files/progress.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/scene.hpp"

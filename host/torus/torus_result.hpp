@@ -7,8 +7,8 @@
 
 #include "host/cl/profile.hpp"
 #include "host/image/image.hpp"
-#include "host/machine/load.hpp"
-#include "host/machine/machine.hpp"
+#include "host/model/load.hpp"
+#include "host/model/machine.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/torus/node_buffers.hpp"
@@ -44,7 +44,7 @@ struct TorusResult {
     RankTraffic traffic;              // of this rank, while it rendered
     std::uint32_t lanes = 0, group_size = 0;
     std::string build_options;
-    std::string tuned;                 // where lanes, group and what goes with them come from (host/kernels/tuned.hpp)
+    std::string tuned;                 // where lanes, group and what goes with them come from (host/cl/tuned.hpp)
     double build_s = 0, render_s = 0;  // measured on the host: kernel build; everything after it
     std::vector<LabelSummary> commands;
 };

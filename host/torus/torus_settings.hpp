@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "host/accel/partition.hpp"
-#include "host/kernels/kernel_options.hpp"
-#include "host/machine/machine.hpp"
-#include "host/machine/t805.hpp"
+#include "host/cl/kernel_options.hpp"
+#include "host/model/machine.hpp"
+#include "host/model/t805.hpp"
 #include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "host/machine/t805.hpp"
+#include "host/model/t805.hpp"
 
 namespace raya {
 namespace {

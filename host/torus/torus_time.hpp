@@ -1,6 +1,6 @@
 // Modelled time of a render on a torus of T805s, from what was counted: two bounds, and what makes them.
 #pragma once
-#include "host/machine/time_model.hpp"
+#include "host/model/time_model.hpp"
 #include "host/torus/torus_result.hpp"
 #include "kernels/shared/torus.h"
 

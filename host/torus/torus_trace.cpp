@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "host/machine/t805.hpp"
+#include "host/model/t805.hpp"
 #include "host/report/traced_pes.hpp"
 #include "host/torus/packet_trace.hpp"
 #include "host/torus/topology.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "kernels/shared/node.h"
 
 namespace raya {

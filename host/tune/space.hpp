@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/kernels/tuned.hpp"
+#include "host/cl/tuned.hpp"
 
 namespace raya {
 

@@ -9,11 +9,11 @@
 #include <cstdlib>
 #include <map>
 
+#include "host/base/json.hpp"
+#include "host/base/module.hpp"
+#include "host/base/read_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/module.hpp"
-#include "host/files/read_file.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/tune/values_json.hpp"
 #include "host/version.hpp"
 

@@ -4,11 +4,11 @@
 
 #include <chrono>
 
+#include "host/base/json.hpp"
+#include "host/base/own_process.hpp"
+#include "host/base/program.hpp"
+#include "host/base/utc_time.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/own_process.hpp"
-#include "host/files/program.hpp"
-#include "host/files/utc_time.hpp"
 
 namespace raya {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
 #include "host/version.hpp"
 
 namespace raya {

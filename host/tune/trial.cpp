@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "host/base/json.hpp"
+#include "host/base/own_process.hpp"
 #include "host/cl/driver_call.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/own_process.hpp"
 #include "host/tune/values_json.hpp"
 
 namespace raya {

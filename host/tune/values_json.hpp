@@ -1,7 +1,7 @@
 // Tuned values as JSON: in files, and between processes.
 #pragma once
-#include "host/files/json.hpp"
-#include "host/kernels/tuned.hpp"
+#include "host/base/json.hpp"
+#include "host/cl/tuned.hpp"
 
 namespace raya {
 

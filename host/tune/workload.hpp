@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/kernels/tuned.hpp"
-#include "host/machine/image_size.hpp"
+#include "host/cl/tuned.hpp"
+#include "host/model/image_size.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

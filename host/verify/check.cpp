@@ -6,9 +6,9 @@
 #include <chrono>
 #include <sstream>
 
+#include "host/base/json.hpp"
 #include "host/cl/program.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
 
 namespace raya {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "host/checks/verdict.hpp"
-#include "host/files/json.hpp"
+#include "host/base/json.hpp"
+#include "host/verify/verdict.hpp"
 
 namespace raya {
 

@@ -1,7 +1,7 @@
 // Rays against objects: hits that are known, and the walk through the grid against testing all objects.
 #include <fmt/core.h>
 
-#include "host/checks/hits.hpp"
+#include "host/verify/hits.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "host/checks/words.hpp"
 #include "host/embedded.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

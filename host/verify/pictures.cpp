@@ -7,10 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "host/checks/words.hpp"
 #include "host/embedded.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/scene/nff_reader.hpp"
+#include "host/verify/words.hpp"
 
 namespace raya {
 namespace {

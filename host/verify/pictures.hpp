@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "host/checks/verdict.hpp"
 #include "host/cl/commands.hpp"
 #include "host/image/image.hpp"
-#include "host/machine/machine.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/machine.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/ring/ring_settings.hpp"
 #include "host/scene/scene.hpp"
+#include "host/verify/verdict.hpp"
 
 namespace raya {
 

@@ -7,10 +7,10 @@
 #include <csignal>
 #include <optional>
 
+#include "host/base/json.hpp"
+#include "host/base/own_process.hpp"
+#include "host/base/program.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/own_process.hpp"
-#include "host/files/program.hpp"
 
 namespace raya {
 namespace {

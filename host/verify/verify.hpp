@@ -6,7 +6,7 @@
 
 #include "host/cl/commands.hpp"
 #include "host/cl/device.hpp"
-#include "host/kernels/kernels.hpp"
+#include "host/cl/kernels.hpp"
 #include "host/verify/check.hpp"
 
 namespace raya {

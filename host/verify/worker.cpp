@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
+#include "host/base/json.hpp"
+#include "host/base/own_process.hpp"
 #include "host/cl/driver_call.hpp"
 #include "host/error.hpp"
-#include "host/files/json.hpp"
-#include "host/files/own_process.hpp"
 
 namespace raya {
 namespace {

@@ -2,7 +2,7 @@
 //
 // A work-group is one work-item, which takes the next V rows; their number is a multiple of V. Everything lies column
 // by column: operand k of row i at k * rows + i, the bits of result k of row i likewise. Every operation is done on
-// every row; the host looks at those that the row is for (host/checks/numbers.hpp).
+// every row; the host looks at those that the row is for (host/verify/numbers.hpp).
 #include "kernels/checks/rows.clh"
 #include "kernels/number/power.clh"
 

@@ -92,7 +92,7 @@ RAYA_SHARED_FUNCTION raya_u32 raya_state_kind(raya_u32 state) { return state & R
 RAYA_SHARED_FUNCTION raya_u32 raya_state_level(raya_u32 state) { return state >> RAYA_STATE_LEVEL_SHIFT & 31u; }
 RAYA_SHARED_FUNCTION raya_u32 raya_state_light(raya_u32 state) { return state >> RAYA_STATE_LIGHT_SHIFT; }
 
-// Words of a packet as it is moved; what the model charges for it is the host's business (host/machine/t805.hpp).
+// Words of a packet as it is moved; what the model charges for it is the host's business (host/model/t805.hpp).
 RAYA_SHARED_FUNCTION raya_u32 raya_packet_words(raya_u32 state) {
     return raya_state_kind(state) == RAYA_KIND_RETURN ? (raya_u32)RAYA_RETURN_WORDS : (raya_u32)RAYA_PACKET_WORDS;
 }

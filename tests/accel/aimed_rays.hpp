@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/polygon_plane.hpp"
 #include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"

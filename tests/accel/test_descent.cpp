@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "host/accel/tree_words.hpp"
-#include "host/checks/hits.hpp"
+#include "host/verify/hits.hpp"
 #include "tests/accel/hits_of_one.hpp"
 #include "tests/accel/partition_lists.hpp"
 #include "tests/thorough.hpp"

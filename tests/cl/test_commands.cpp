@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "host/checks/transfers.hpp"
 #include "host/cl/commands.hpp"
 #include "host/error.hpp"
 #include "host/scene/split_mix.hpp"
+#include "host/verify/transfers.hpp"
 
 using namespace raya;
 using Catch::Contains;

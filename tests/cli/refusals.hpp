@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/run_program.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 

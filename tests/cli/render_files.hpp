@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/document.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 

@@ -5,9 +5,9 @@
 
 #include "host/cli/parse_failure.hpp"
 #include "host/error.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/cli/whole_tree.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

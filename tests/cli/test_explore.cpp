@@ -1,8 +1,8 @@
 // raya explore: the page that it writes, and what it refuses.
 #include <catch2/catch.hpp>
 
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/run_program.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

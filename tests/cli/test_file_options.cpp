@@ -6,10 +6,10 @@
 #include <functional>
 #include <regex>
 
+#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/error.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/tune/store.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/whole_tree.hpp"

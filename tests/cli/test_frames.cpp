@@ -8,11 +8,11 @@
 #include <optional>
 #include <thread>
 
+#include "host/base/whole_file.hpp"
 #include "host/cli/camera_path.hpp"
 #include "host/cli/frame_options.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"

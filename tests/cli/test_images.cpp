@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "tests/cli/refusals.hpp"
@@ -119,8 +119,9 @@ TEST_CASE("what a format cannot hold is warned of, and refused where nothing is 
     const RunOutcome warned = render("s 0 0 0 1000\ns 9 9 9 1e-5\n", "spa22");
     INFO(warned.told());
     CHECK(warned.code == 0);
-    CHECK_THAT(warned.messages(), Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are not seen") &&
-                               Catch::Contains("e6m15 holds beside a length of 1e+06"));
+    CHECK_THAT(warned.messages(),
+               Catch::StartsWith("raya: warning: far.nff: 1 spheres, cones or checkers are not seen") &&
+                   Catch::Contains("e6m15 holds beside a length of 1e+06"));
     const Document report = Document::parse(file_contents(folder / "x.json"));
     REQUIRE(report["warnings"].size() == 1);
     CHECK_THAT(warned.err, Catch::Contains(report["warnings"][0].get<std::string>()));

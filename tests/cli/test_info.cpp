@@ -1,7 +1,7 @@
 // raya info: its figures are those of renders, and it needs no device.
 #include <fmt/core.h>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"

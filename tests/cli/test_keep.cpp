@@ -1,7 +1,7 @@
 // --keep and --resume: a render that was stopped goes on, and nothing that is kept is lost by mistake.
 #include <filesystem>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 

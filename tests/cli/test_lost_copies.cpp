@@ -4,10 +4,10 @@
 #include <sstream>
 #include <utility>
 
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

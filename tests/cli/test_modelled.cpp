@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-// 6 cycles a division, 8 a root, 3 a branch (host/machine/budget.hpp).
+// 6 cycles a division, 8 a root, 3 a branch (host/model/budget.hpp).
 std::uint64_t cycles_of(const Document& budget) {
     return budget["multiply_accumulates"].get<std::uint64_t>() + 6 * budget["divisions"].get<std::uint64_t>() +
            8 * budget["roots"].get<std::uint64_t>() + budget["moves"].get<std::uint64_t>() +

@@ -6,9 +6,9 @@
 
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/document.hpp"
-#include "tests/files/scratch_folder.hpp"
 #include "tests/kernels/write_kernels.hpp"
 #include "tests/thorough.hpp"
 #include "tests/verify/faults.hpp"

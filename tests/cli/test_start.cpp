@@ -6,9 +6,9 @@
 #include <regex>
 #include <set>
 
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/run_program.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "tests/base/gunzip.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
-#include "tests/files/gunzip.hpp"
 
 namespace raya {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <set>
 
-#include "host/files/program.hpp"
+#include "host/base/program.hpp"
 #include "host/version.hpp"
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"

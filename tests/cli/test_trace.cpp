@@ -2,9 +2,9 @@
 #include <map>
 
 #include "host/report/trace_file.hpp"
+#include "tests/base/gunzip.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/document.hpp"
-#include "tests/files/gunzip.hpp"
 #include "tests/report/trace_schema.hpp"
 
 namespace raya {

@@ -1,9 +1,9 @@
 // --from, --at, --up, --angle, --background, --light: a picture by them is that of a scene that says the same.
 #include <fmt/core.h>
 
+#include "host/base/whole_file.hpp"
 #include "host/cli/view_options.hpp"
 #include "host/error.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/scene/nff_reader.hpp"
 #include "host/scene/nff_writer.hpp"
 #include "host/scene/split_mix.hpp"

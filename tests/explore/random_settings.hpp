@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-#include "host/machine/mapping_rule.hpp"
+#include "host/model/mapping_rule.hpp"
 #include "host/ring/cost_image.hpp"
 #include "host/ring/mapping.hpp"
 

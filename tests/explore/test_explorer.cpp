@@ -6,8 +6,8 @@
 #include "host/explore/explorer.hpp"
 #include "host/explore/figures.hpp"
 #include "host/page/html_document.hpp"
+#include "tests/base/gunzip.hpp"
 #include "tests/explore/random_settings.hpp"
-#include "tests/files/gunzip.hpp"
 
 namespace raya {
 namespace {

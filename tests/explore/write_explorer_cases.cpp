@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <numeric>
 
+#include "host/base/json.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/explore/explorer.hpp"
 #include "host/explore/figures.hpp"
-#include "host/files/json.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/ring/schedule.hpp"
 #include "tests/explore/random_settings.hpp"
 

@@ -1,8 +1,8 @@
 // Records of frames, as `raya render --frames` reads them: any bytes are a record or refused; one that was read
 // survives being written.
+#include "host/base/read_file.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
-#include "host/files/read_file.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace raya;

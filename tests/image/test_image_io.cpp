@@ -16,7 +16,7 @@
 #include "host/error.hpp"
 #include "host/image/image_io.hpp"
 #include "host/image/srgb.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/image/read_image.hpp"
 
 namespace raya {

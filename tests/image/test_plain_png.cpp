@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/image/plain_png.hpp"
 #include "host/image/srgb.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/image/read_image.hpp"
 
 namespace raya {

@@ -1,5 +1,5 @@
 // kernel_builds TO [GROUP [KERNELS]]: writes to the folder TO the source of every kernel file, as a GPU's driver is
-// given it, and builds.json: with which options, as host/kernels makes them. For tools/gpu_check, which has no device.
+// given it, and builds.json: with which options, as host/cl makes them. For tools/gpu_check, which has no device.
 // GROUP: work-items of a group, 0 for what raya takes on a GPU; KERNELS: a folder like kernels/.
 #include <fmt/core.h>
 
@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "host/files/json.hpp"
-#include "host/files/whole_file.hpp"
-#include "host/kernels/kernel_options.hpp"
+#include "host/base/json.hpp"
+#include "host/base/whole_file.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "kernels/shared/bvh.h"
 
 namespace raya {

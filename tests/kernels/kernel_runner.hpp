@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "host/checks/check_runner.hpp"
 #include "host/cl/commands.hpp"
-#include "host/kernels/kernels.hpp"
+#include "host/cl/kernels.hpp"
+#include "host/verify/check_runner.hpp"
 #include "tests/paths.h"
 
 namespace raya {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/checks/hits.hpp"
 #include "host/scene/packer.hpp"
+#include "host/verify/hits.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/reference/reference.hpp"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "host/cl/kernel_options.hpp"
+#include "host/cl/tuned.hpp"
 #include "host/error.hpp"
-#include "host/kernels/kernel_options.hpp"
-#include "host/kernels/tuned.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/cl/kernel_source.hpp"
 #include "host/error.hpp"
-#include "host/kernels/kernel_source.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/paths.h"
 
 using namespace raya;

@@ -1,8 +1,8 @@
 // The one door to kernels: every description agrees with its kernel's file, and a file is built once.
 #include <catch2/catch.hpp>
 
+#include "host/cl/kernels.hpp"
 #include "host/error.hpp"
-#include "host/kernels/kernels.hpp"
 #include "host/ring/contrast.hpp"
 #include "host/ring/filter.hpp"
 #include "host/ring/tracer.hpp"

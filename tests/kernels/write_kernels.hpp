@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "host/cl/kernel_source.hpp"
 #include "host/embedded.hpp"
-#include "host/kernels/kernel_source.hpp"
 
 namespace raya {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 
 namespace raya {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/checks/numbers.hpp"
+#include "host/verify/numbers.hpp"
 
 namespace raya {
 

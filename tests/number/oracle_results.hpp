@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "host/checks/numbers.hpp"
+#include "host/verify/numbers.hpp"
 #include "tests/number/mpfr_oracle.hpp"
 
 namespace raya {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "host/checks/numbers.hpp"
 #include "host/scene/split_mix.hpp"
+#include "host/verify/numbers.hpp"
 #include "tests/number/mpfr_oracle.hpp"
 
 namespace raya {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "host/files/module.hpp"
+#include "host/base/module.hpp"
 #include "host/ranks/mpi_module.hpp"
 #include "host/ranks/ranks.hpp"
 

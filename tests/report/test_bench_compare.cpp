@@ -5,8 +5,8 @@
 
 #include "host/error.hpp"
 #include "host/report/bench_compare.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/document.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

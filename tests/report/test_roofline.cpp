@@ -1,7 +1,7 @@
 // The roofline: figures that can be worked out by hand.
 #include <catch2/catch.hpp>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/report/profile_table.hpp"
 #include "host/report/roofline.hpp"
 #include "tests/document.hpp"

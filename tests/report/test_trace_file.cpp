@@ -4,8 +4,8 @@
 
 #include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
+#include "tests/base/gunzip.hpp"
 #include "tests/document.hpp"
-#include "tests/files/gunzip.hpp"
 #include "tests/report/trace_schema.hpp"
 
 namespace raya {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/kernels/kernel_options.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/nff_reader.hpp"

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "host/checks/transfers.hpp"
 #include "host/ring/bus.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/ring.hpp"
+#include "host/verify/transfers.hpp"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;

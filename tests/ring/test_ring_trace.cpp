@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/ring/ring_trace.hpp"
 #include "host/ring/ring_work.hpp"
 #include "host/scene/split_mix.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/image/image.hpp"
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 
 namespace raya::whole_image {
 

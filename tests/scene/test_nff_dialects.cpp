@@ -4,11 +4,11 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_reader.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 
 namespace raya {
 namespace {

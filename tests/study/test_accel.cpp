@@ -2,12 +2,12 @@
 #include <fmt/core.h>
 #include <sys/stat.h>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/scene/generate.hpp"
 #include "host/study/statistics.hpp"
 #include "host/study/studies.hpp"
 #include "kernels/shared/bvh.h"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/study/study_cases.hpp"
 
 namespace raya {

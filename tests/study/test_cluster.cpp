@@ -1,7 +1,7 @@
 // The family of scenes as heavy as the paper's: figures against plain sums, and that the search met what it sought.
 #include <numeric>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/scene/generate.hpp"
 #include "host/study/ensemble.hpp"
 #include "host/study/paper.hpp"

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "host/machine/t805.hpp"
+#include "host/model/t805.hpp"
 #include "host/scene/generate.hpp"
 #include "host/study/paper.hpp"
 #include "host/study/studies.hpp"

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <regex>
 
+#include "host/base/whole_file.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/files/whole_file.hpp"
 #include "host/page/html.hpp"
 #include "host/study/conclusion.hpp"
 #include "host/study/document.hpp"
@@ -13,7 +13,7 @@
 #include "host/study/paper.hpp"
 #include "host/study/references.hpp"
 #include "host/study/studies.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
 namespace raya {

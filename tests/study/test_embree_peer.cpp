@@ -3,10 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/study/embree_peer.hpp"
 #include "host/study/peer.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
 namespace raya {

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "host/machine/t805.hpp"
+#include "host/model/t805.hpp"
 #include "host/scene/generate.hpp"
 #include "host/study/grid_run.hpp"
 #include "host/torus/torus_renderer.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/ring/route.hpp"
 #include "host/study/arrays.hpp"
 #include "host/study/measured.hpp"

@@ -10,8 +10,8 @@
 
 #include "host/error.hpp"
 #include "host/study/page_writer.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/document.hpp"
-#include "tests/files/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
 namespace raya {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/study/page_writer.hpp"
 #include "host/study/plotter.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/study/small_page.hpp"
 
 namespace raya {

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "host/files/whole_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/study/peer.hpp"
 #include "host/study/simgrid_peer.hpp"
 #include "host/study/studies.hpp"
 #include "host/study/torus_runs.hpp"
 #include "host/torus/simgrid_files.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/paths.h"
 #include "tests/study/study_cases.hpp"
 #include "tests/torus/random_history.hpp"

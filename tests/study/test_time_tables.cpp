@@ -1,7 +1,7 @@
 // The studies of Tables 2, 3 and 4, against the cost image and the machine's rates by hand.
 #include <catch2/catch.hpp>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/study/arrays.hpp"
 #include "host/study/laboratory.hpp"

@@ -23,7 +23,7 @@ PRECOMPILED = {
     "map": r"\bstd::map\b",
 }
 GIVEN_BY = {"fmt/format.h": "fmt/core.h", "fmt/ranges.h": "fmt/core.h"}
-NO_OPENCL = ["host/files/", "host/image/", "host/machine/", "host/report/", "host/scene/"]
+NO_OPENCL = ["host/base/", "host/image/", "host/model/", "host/report/", "host/scene/"]
 faults = []
 
 

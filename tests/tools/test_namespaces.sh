@@ -91,9 +91,9 @@ check() {  # check NAME SCENE OPTION...: without MPI, then on one rank for each 
     shift 2
     "$raya" render "$scenes/$scene.nff" "$@" --quiet -o "$scratch/image.pfm" --report "$scratch/alone.json"
     for host in "${hosts[@]}"; do
-        mkdir -p "$scratch/$host/kernels"
+        mkdir -p "$scratch/$host/cl"
         rm -f "$scratch/$host"/{scene,image,report}.*
-        cp -ru "$POCL_CACHE_DIR/." "$scratch/$host/kernels"
+        cp -ru "$POCL_CACHE_DIR/." "$scratch/$host/cl"
     done
     cp "$scenes/$scene.nff" "$scratch/${hosts[0]}/scene.nff"
     before=$(bytes_on_link)

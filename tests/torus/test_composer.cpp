@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/kernels/kernel_options.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/torus/composer.hpp"
 #include "tests/scene/random_below.hpp"
 

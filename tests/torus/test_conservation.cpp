@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "host/torus/packet_trace.hpp"
-#include "tests/files/gunzip.hpp"
+#include "tests/base/gunzip.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/recorded.hpp"
 

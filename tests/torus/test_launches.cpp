@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "host/kernels/tuned.hpp"
+#include "host/cl/tuned.hpp"
 #include "host/scene/word_records.hpp"
 #include "host/torus/launch_plan.hpp"
 #include "host/torus/standstill.hpp"

@@ -10,7 +10,7 @@
 
 #include "host/scene/split_mix.hpp"
 #include "host/torus/packet_trace.hpp"
-#include "tests/files/gunzip.hpp"
+#include "tests/base/gunzip.hpp"
 
 namespace raya {
 namespace {

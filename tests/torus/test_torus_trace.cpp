@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "host/machine/budget.hpp"
+#include "host/model/budget.hpp"
 #include "host/torus/torus_time.hpp"
 #include "host/torus/torus_trace.hpp"
 #include "host/torus/torus_work.hpp"

@@ -5,8 +5,8 @@
 
 #include "host/error.hpp"
 #include "host/tune/store.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/cli/run_program.hpp"
-#include "tests/files/scratch_folder.hpp"
 
 namespace raya {
 namespace {

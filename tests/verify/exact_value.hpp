@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "host/machine/number_format.hpp"
+#include "host/model/number_format.hpp"
 #include "tests/number/mpfr_oracle.hpp"
 
 namespace raya {

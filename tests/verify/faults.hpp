@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "host/kernels/kernel_patch.hpp"
+#include "host/cl/kernel_patch.hpp"
 #include "kernels/shared/events.h"
 
 namespace raya {

@@ -7,7 +7,7 @@
 
 #include "host/verify/pictures.hpp"
 #include "host/verify/verify.hpp"
-#include "tests/files/scratch_folder.hpp"
+#include "tests/base/scratch_folder.hpp"
 #include "tests/paths.h"
 #include "tests/verify/faults.hpp"
 

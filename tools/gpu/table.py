@@ -44,7 +44,7 @@ def page(cells, versions, vendors):
     return f"""# What kernels take of GPUs
 
 Written by `tools/gpu_check --write`, which compiles the kernels for GPUs on a machine that has none, as raya builds them there
-(`host/kernels/kernel_options.cpp`), and holds them against `tests/portability/gpu_budget.csv`. For NVIDIA and AMD clang and libclc stand in
+(`host/cl/kernel_options.cpp`), and holds them against `tests/portability/gpu_budget.csv`. For NVIDIA and AMD clang and libclc stand in
 for the compilers of their drivers, which may come to other figures, and inline all that they can; ocloc is Intel's own.
 
 | target | core | compilers |

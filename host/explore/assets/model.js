@@ -83,7 +83,7 @@ function loadsOf(owners, costs, pes) {
   return loads;
 }
 
-// host/machine/load.cpp, in the same order of operations.
+// host/model/load.cpp, in the same order of operations.
 function balanceOf(loads) {
   const pes = loads.length;
   let sum = 0, busiest = 0, idlest = 0;
@@ -209,7 +209,7 @@ function figuresOf(setting, size, costs, machine) {
   const balance = balanceOf(loads), moves = movesOf(owners, size, setting.pes);
   const figures =
     {setting, owners, loads, sizes, share, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
-  if (machine) {  // host/machine/time_model.cpp
+  if (machine) {  // host/model/time_model.cpp
     const words = moves.rotations * setting.pes * 3 * share;
     figures.time = {
       compute: 1e-6 * machine.cycleNs * balance.max,
@@ -233,7 +233,7 @@ function fixed(value, digits) {
 // A narrow blank between thousands.
 const grouped = (number) => String(number).replace(/\B(?=(\d{3})+(\.|$))(?<!\.\d*)/g, "\u202f");
 
-// host/machine/unit_text.cpp
+// host/model/unit_text.cpp
 function timeText(ms) {
   const units = [[1e4, 1, "ms"], [6e5, 1e3, "s"], [3.6e7, 6e4, "min"], [Infinity, 3.6e6, "h"]];
   const [, unit, name] = units.find(([below]) => ms < below);

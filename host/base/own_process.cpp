@@ -1,0 +1,108 @@
+#include "host/base/own_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+
+namespace raya {
+namespace {
+
+constexpr const char* kOwnProgram = "/proc/self/exe";
+
+std::runtime_error system_error(const char* what) {
+    return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
+}
+
+// Between fork and exec: calls nothing that takes locks.
+[[noreturn]] void become(char* const* arguments, int pipe, pid_t parent) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // kept by exec
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() == parent) {
+        ::fcntl(pipe, F_SETFD, 0);  // kept open by exec
+        ::execv(kOwnProgram, arguments);
+    }
+    ::_exit(kNotStarted);
+}
+
+}  // namespace
+
+OwnProcess::OwnProcess(std::vector<std::string> arguments) {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("no pipe to a process of its own");
+    arguments.insert(arguments.begin(), "raya");
+    arguments.insert(arguments.end(), {"--lines", std::to_string(ends[1])});
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    const pid_t parent = ::getpid();
+    child_ = ::fork();
+    if (child_ == 0) become(pointers.data(), ends[1], parent);
+    ::close(ends[1]);
+    pipe_ = ends[0];
+    if (child_ > 0) return;
+    ::close(pipe_);
+    throw system_error("no process of its own");
+}
+
+OwnProcess::~OwnProcess() {
+    ::close(pipe_);
+    if (ended_) return;
+    ::kill(child_, SIGKILL);
+    wait();
+}
+
+bool OwnProcess::has_line(std::string& line) {
+    const std::size_t end = text_.find('\n');
+    if (end == std::string::npos) return false;
+    line = text_.substr(0, end);
+    text_.erase(0, end + 1);
+    return true;
+}
+
+bool OwnProcess::has_ended() {
+    if (!ended_) ended_ = ::waitpid(child_, &status_, WNOHANG) == child_;
+    return ended_;
+}
+
+OwnProcess::Read OwnProcess::read(std::string& line, std::chrono::milliseconds wait) {
+    while (!has_line(line)) {
+        pollfd in{pipe_, POLLIN, 0};
+        const int ready = ::poll(&in, 1, static_cast<int>(wait.count()));
+        // A process that the driver has started may hold the pipe open.
+        if (ready == 0) return has_ended() ? Read::kEnd : Read::kNothing;
+        std::array<char, 4096> block{};
+        const ssize_t count = ready > 0 ? ::read(pipe_, block.data(), block.size()) : -1;
+        if (count > 0)
+            text_.append(block.data(), static_cast<std::size_t>(count));
+        else if (count == 0 || errno != EINTR)
+            return Read::kEnd;
+    }
+    return Read::kLine;
+}
+
+int OwnProcess::wait() {
+    while (!ended_) ended_ = ::waitpid(child_, &status_, 0) == child_ || errno != EINTR;
+    return status_;
+}
+
+void keep_lines_to_oneself(int lines) { ::fcntl(lines, F_SETFD, FD_CLOEXEC); }
+
+void send_line(int lines, std::string_view line) {
+    const std::string text = std::string(line) + "\n";
+    for (std::size_t sent = 0; sent < text.size();) {
+        const ssize_t count = ::write(lines, text.data() + sent, text.size() - sent);
+        if (count < 0 && errno != EINTR) return;
+        if (count > 0) sent += static_cast<std::size_t>(count);
+    }
+}
+
+}  // namespace raya

@@ -1,0 +1,80 @@
+#include "host/base/progress.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/base/say.hpp"
+#include "host/base/verbosity.hpp"
+
+namespace raya {
+
+std::string progress_line(const std::string& what, const std::optional<Done>& done, double seconds) {
+    constexpr int kWidth = 40;
+    constexpr double kEnough = 0.001;  // of the work: from less nothing can be said of the rest
+    const double share = done ? done->share : 0;
+    if (share < kEnough) return fmt::format("{} ... {:.0f} s", what, seconds);
+    const int filled = static_cast<int>(share * kWidth);
+    const double left = done->seconds / share - seconds;
+    return fmt::format("[{}{}] {:3.0f} %  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+                       std::min(99.0, std::floor(100 * share)),
+                       left > 0 ? fmt::format("{:.0f} s left", left) : fmt::format("{:.0f} s so far", seconds));
+}
+
+std::jthread announce_compiling(const std::string& device) {
+    if (is_quiet()) return {};
+    return std::jthread([device](const std::stop_token& end) {
+        using namespace std::chrono;
+        std::mutex mutex;
+        std::condition_variable_any ended;
+        std::unique_lock lock(mutex);
+        const auto began = steady_clock::now();
+        const auto never = [] { return false; };
+        ended.wait_for(lock, end, 1s, never);
+        if (end.stop_requested()) return;
+        say(fmt::format("raya: compiling kernels for {} (first run only) ...\n", device));
+        ended.wait(lock, end, never);
+        say(fmt::format("raya: compiling kernels took {:.1f} s\n",
+                        duration<double>(steady_clock::now() - began).count()));
+    });
+}
+
+ProgressBar::ProgressBar(bool wanted, const std::string& what) : what_(what) {
+    if (wanted && shows_progress()) drawer_ = std::thread([this] { draw_until_ended(); });
+}
+
+ProgressBar::~ProgressBar() {
+    if (!active()) return;
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+    }
+    end_.notify_one();
+    drawer_.join();
+}
+
+void ProgressBar::stage(const std::string& what) {
+    const std::lock_guard lock(mutex_);
+    what_ = what;
+    stage_began_ = Clock::now();
+    done_.reset();
+}
+
+void ProgressBar::update(double done) {
+    const std::lock_guard lock(mutex_);
+    const double share = std::clamp(done, 0.0, 1.0);
+    if (!done_ || share > done_->share) done_ = {share, stage_seconds()};
+}
+
+double ProgressBar::stage_seconds() const { return std::chrono::duration<double>(Clock::now() - stage_began_).count(); }
+
+void ProgressBar::draw_until_ended() {
+    using namespace std::chrono_literals;
+    std::unique_lock lock(mutex_);
+    for (auto pause = 700ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
+        show_status(progress_line(what_, done_, stage_seconds()));
+    clear_status();
+}
+
+}  // namespace raya

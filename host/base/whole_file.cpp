@@ -1,0 +1,187 @@
+#include "host/base/whole_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "host/base/interruption.hpp"
+#include "host/base/standard_streams.hpp"
+#include "host/error.hpp"
+
+namespace raya {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr mode_t kFileMode = 0666;  // what open() gives to any new file; the user's umask takes its share
+
+[[noreturn]] void refuse(const fs::path& path, std::string_view reason, std::string_view remedy) {
+    throw UserError(fmt::format("cannot write '{}': {}; {}", output_name(path), reason, remedy));
+}
+
+std::string_view remedy_for(int error) {
+    switch (error) {
+        case ENOSPC:
+        case EDQUOT:
+            return "make room there or name a file on another disk";
+        case EFBIG:
+            return "raise the limit on the size of files (ulimit -f) or ask for a smaller file";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return "name a file in a folder that you may write to";
+        default:
+            return "name another file";
+    }
+}
+
+[[noreturn]] void refuse(const fs::path& path, int error) {
+    refuse(path, std::generic_category().message(error), remedy_for(error));
+}
+
+bool may(const fs::path& path, int mode) { return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0; }
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+void check_folder(const fs::path& path, const fs::path& folder) {
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (status.type() == fs::file_type::not_found)
+        refuse(path, fmt::format("the folder '{}' does not exist", folder.string()),
+               "make it first (mkdir -p) or name another file");
+    if (error) refuse(path, error.value());
+    if (!fs::is_directory(status))
+        refuse(path, fmt::format("'{}' is not a folder", folder.string()), "name another file");
+    if (!may(folder, W_OK | X_OK))
+        refuse(path, fmt::format("the folder '{}' is not writable", folder.string()),
+               "change its permissions or name a file in another folder");
+}
+
+/// Where the bytes go once `path` has been found writable.
+struct Target {
+    fs::path file;        // symbolic links resolved
+    bool direct = false;  // a device, a pipe or stdout: written as it is
+};
+
+/// `path`, or what it names as a link, and so on.
+fs::path followed(const fs::path& path) {
+    constexpr int kMostLinks = 40;  // the kernel's own limit
+    fs::path file = path;
+    std::error_code error;
+    for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
+        if (links == kMostLinks) refuse(path, ELOOP);
+        const fs::path named = fs::read_symlink(file, error);
+        if (error) refuse(path, error.value());
+        file = named.is_absolute() ? named : folder_of(file) / named;
+    }
+    return file;
+}
+
+Target checked_target(const fs::path& path) {
+    if (path.empty()) refuse(path, "the name is empty", "name a file");
+    if (is_standard_stream(path)) return {path, true};
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::is_directory(status) || !path.has_filename()) refuse(path, "it is a folder", "name a file in it");
+    if (error && status.type() != fs::file_type::not_found) refuse(path, error.value());
+    const bool exists = fs::exists(status);
+    if (exists && !may(path, W_OK))
+        refuse(path, "the file exists and is not writable", "change its permissions or name another file");
+    if (exists && !fs::is_regular_file(status)) return {path, true};
+    const fs::path file = followed(path);
+    check_folder(path, folder_of(file));
+    const fs::path folder = fs::canonical(folder_of(file), error);
+    if (error) refuse(path, error.value());
+    return {folder / file.filename(), false};
+}
+
+using Next = std::function<std::string_view()>;
+
+/// Writes all pieces to the descriptor and closes it. Returns 0 or the errno of what failed.
+int write_and_close(int descriptor, const Next& next) {
+    int error = 0;
+    for (std::string_view bytes = next(); !bytes.empty() && error == 0;) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written >= 0)
+            bytes.remove_prefix(static_cast<std::size_t>(written));
+        else if (errno != EINTR)
+            error = errno;
+        if (bytes.empty()) bytes = next();
+    }
+    // Network file systems report a full disk only here. EINTR: Linux has closed it all the same.
+    if (::close(descriptor) != 0 && error == 0 && errno != EINTR) error = errno;
+    return error;
+}
+
+/// A new file in the folder of `target`; unless it is renamed it goes with this object, or by an interruption. The name
+/// is short, so that it fits wherever the target's own name does.
+struct TemporaryFile {
+    fs::path path;
+    FileInProgress in_progress;  // before the file exists: an interruption may come at any time
+    int descriptor;
+    bool renamed = false;
+
+    explicit TemporaryFile(const fs::path& name)
+        : path(name),
+          in_progress(path),
+          descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode)) {}
+    ~TemporaryFile() {
+        if (descriptor >= 0 && !renamed) ::unlink(path.c_str());
+    }
+};
+
+std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::path& shown) {
+    static std::atomic<unsigned> counter{0};
+    while (true) {
+        auto file =
+            std::make_unique<TemporaryFile>(folder_of(target) / fmt::format(".raya-{}-{}.tmp", ::getpid(), counter++));
+        if (file->descriptor >= 0) return file;
+        if (errno != EEXIST && errno != EINTR) refuse(shown, errno);
+    }
+}
+
+void write_direct(const fs::path& path, const Next& next) {
+    const int descriptor = is_standard_stream(path) ? take_stdout() : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // of a pipe that waited for its reader
+    if (descriptor < 0) refuse(path, errno);
+    if (const int error = write_and_close(descriptor, next)) refuse(path, error);
+}
+
+}  // namespace
+
+void check_writable(const fs::path& path) {
+    checked_target(path);
+    if (is_standard_stream(path)) keep_stdout_for_file();
+}
+
+std::string file_identity(const fs::path& path) {
+    struct stat status {};
+    const auto inode = [&] { return fmt::format("{}:{}", status.st_dev, status.st_ino); };
+    if (::stat(path.c_str(), &status) == 0) return S_ISREG(status.st_mode) ? inode() : "";
+    const fs::path file = followed(path);
+    if (::stat(folder_of(file).c_str(), &status) == 0) return inode() + '/' + file.filename().string();
+    return fs::absolute(file).lexically_normal().string();
+}
+
+void write_whole_file(const fs::path& path, std::string_view bytes) {
+    write_whole_file(path, [left = bytes]() mutable { return std::exchange(left, {}); });
+}
+
+void write_whole_file(const fs::path& path, const std::function<std::string_view()>& next) {
+    const Target target = checked_target(path);
+    if (target.direct) return write_direct(path, next);
+    const auto temporary = open_temporary(target.file, path);
+    if (const int error = write_and_close(temporary->descriptor, next)) refuse(path, error);
+    if (std::rename(temporary->path.c_str(), target.file.c_str()) != 0) refuse(path, errno);
+    temporary->renamed = true;
+}
+
+}  // namespace raya

@@ -1,0 +1,112 @@
+#include "host/cl/kernel_options.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "host/error.hpp"
+#include "kernels/shared/trace_progress.h"
+
+namespace raya {
+namespace {
+
+constexpr std::array<std::uint32_t, 4> kLanes = {1, 4, 8, 16};
+constexpr std::uint32_t kMostGroup = 1024;
+constexpr std::uint32_t kMostBounces = 31;  // waiting rays are bits of a word
+
+void check_tuning(const KernelTuning& more) {
+    const auto check = [](const char* what, std::uint32_t value, std::uint32_t least, std::uint32_t most) {
+        if (value != 0 && (value < least || value > most))
+            throw UserError(fmt::format("{} {}: must be {}..{}", what, value, least, most));
+    };
+    check("sphere batch", more.sphere_batch, 1, 32);
+    check("trees", more.trees, 1, 8);
+    check("beams", more.beams, 1, 8);
+    check("registers", more.registers, 16, 255);
+}
+
+}  // namespace
+
+void check_kernel_options(const KernelOptions& options, const DeviceInfo& device) {
+    if (std::find(kLanes.begin(), kLanes.end(), options.lanes) == kLanes.end())
+        throw UserError(fmt::format("--lanes {}: must be 1, 4, 8 or 16", options.lanes));
+    const std::uint32_t most = most_group_size(device);
+    if (options.group_size < 1 || options.group_size > most)
+        throw UserError(
+            fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, most, device.name));
+    if (options.bounces > kMostBounces)
+        throw UserError(fmt::format("--bounces {}: must be 0..{}", options.bounces, kMostBounces));
+    check_tuning(options.more);
+}
+
+std::uint32_t most_group_size(const DeviceInfo& device) {
+    return static_cast<std::uint32_t>(std::min<std::size_t>(kMostGroup, device.max_group_size));
+}
+
+bool takes_register_limit(const DeviceInfo& device) { return device.platform.find("NVIDIA") != std::string::npos; }
+
+std::uint32_t trees_of(const KernelOptions& options) {
+    const bool tuned = options.more.trees && options.accel == RAYA_ACCEL_GRID;
+    return tuned ? options.more.trees : RAYA_DEFAULT_TREES(options.accel, options.lanes);
+}
+
+std::uint32_t default_lanes(const DeviceInfo& device) {
+    if (device.type != "cpu" || device.loop_turns > 0) return 1;
+    std::uint32_t lanes = 4;
+    for (const std::uint32_t width : kLanes)
+        if (width <= device.native_float_width) lanes = std::max(lanes, width);
+    return lanes;
+}
+
+std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
+    constexpr std::size_t kOfGpu = 128, kOfVector = 8;
+    const bool cpu = device.type == "cpu";
+    if (cpu && (torus || device.loop_turns == 0)) return 1;
+    return static_cast<std::uint32_t>(std::min(cpu ? kOfVector : kOfGpu, device.max_group_size));
+}
+
+bool filters_hold(const NumberFormat& format, double extent) {
+    constexpr int kFewestBits = 10;
+    const double room =
+        std::ldexp(1.0, (1 << (format.exponent_bits - 2)) - 2);  // a quarter of the square root of the largest number
+    return !format.is_fp32() && format.fraction_bits >= kFewestBits && extent <= room;
+}
+
+std::vector<std::string> build_options(const KernelOptions& options, const DeviceInfo& device) {
+    check_kernel_options(options, device);
+    const NumberFormat& format = options.format;
+    const bool exact_divide = options.exact_divide && device.correctly_rounded_divide_sqrt;
+    std::vector<std::string> all = {"-cl-std=CL1.2"};
+    const auto define = [&](const char* name, std::uint32_t value) {
+        all.push_back(fmt::format("-DRAYA_{}={}", name, value));
+    };
+    if (!format.is_fp32()) {
+        define("EXPONENT_BITS", static_cast<std::uint32_t>(format.exponent_bits));
+        define("FRACTION_BITS", static_cast<std::uint32_t>(format.fraction_bits));
+        define("TRUNCATE", format.truncates);
+    }
+    define("EXACT_DIVIDE", exact_divide);
+    define("EXACT_FMA", options.exact_fma && device.fused_multiply_add);
+    if (exact_divide) all.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
+    define("LANES", options.lanes);
+    define("GROUP", options.group_size);
+    define("BOUNCES", options.bounces);
+    define("WORDS_LOCAL", options.words_local);
+    define("POLYGONS", options.polygons);
+    define("PATCHES", options.patches);
+    define("CONES", options.cones);
+    if (options.accel != RAYA_ACCEL_NONE) define("ACCEL", options.accel);
+    if (options.accel == RAYA_ACCEL_BVH) define("BVH_STACK", options.stack);
+    if (options.filter) define("FILTER", 1);
+    if (options.costs) define("COSTS", 1);
+    if (options.more.sphere_batch) define("SPHERE_BATCH", options.more.sphere_batch);
+    if (options.more.trees && options.accel == RAYA_ACCEL_GRID) define("TREES", options.more.trees);
+    if (options.more.beams && options.accel == RAYA_ACCEL_GRID) define("BEAMS", options.more.beams);
+    if (options.more.registers && takes_register_limit(device))
+        all.push_back(fmt::format("-cl-nv-maxrregcount={}", options.more.registers));
+    return all;
+}
+
+}  // namespace raya

@@ -1,0 +1,85 @@
+#include "host/cl/kernel_source.hpp"
+
+#include <fmt/core.h>
+
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "host/base/read_file.hpp"
+#include "host/embedded.hpp"
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+std::string read_kernel_file(const std::string& file, const std::filesystem::path& folder) {
+    if (folder.empty()) {
+        const auto found = embedded_files().find("kernels/" + file);
+        if (found == embedded_files().end()) throw UserError(fmt::format("no kernel file '{}' in this program", file));
+        return found->second;
+    }
+    try {
+        return read_file(folder / file);
+    } catch (const UnreadableFile& error) {
+        throw UserError(
+            fmt::format("cannot read kernel file '{}': {}; --kernel-dir must be a folder like the project's kernels/",
+                        (folder / file).string(), error.what()));
+    }
+}
+
+// The kernel file that a line of `file` includes, as a path below kernels/; empty for any other line. What has no
+// folder in its name lies beside `file`.
+std::string included_file(const std::string& line, const std::string& file) {
+    constexpr std::string_view kInclude = "#include \"", kKernels = "kernels/";
+    if (!line.starts_with(kInclude)) return {};
+    const std::string name = line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
+    if (name.starts_with(kKernels)) return name.substr(kKernels.size());
+    return name.find('/') == std::string::npos ? (std::filesystem::path(file).parent_path() / name).string() : name;
+}
+
+void append(std::string& source, const std::string& text, const std::string& name, const KernelSources& sources,
+            std::set<std::string>& seen) {
+    source += fmt::format("#line 1 \"{}\"\n", name);
+    std::istringstream lines(text);
+    int number = 0;
+    for (std::string line; std::getline(lines, line);) {
+        ++number;
+        const std::string included = included_file(line, name);
+        if (included.empty()) {
+            source += line + '\n';
+        } else {
+            if (seen.insert(included).second) append(source, kernel_file(included, sources), included, sources, seen);
+            source += fmt::format("#line {} \"{}\"\n", number + 1, name);
+        }
+    }
+}
+
+}  // namespace
+
+std::string kernel_file(const std::string& file, const KernelSources& sources) {
+    return patched_text(read_kernel_file(file, sources.folder), file, sources.patches);
+}
+
+std::string kernel_source(const std::string& file, const KernelSources& sources) {
+    return expand_kernel_source(kernel_file(file, sources), file, sources);
+}
+
+std::string expand_kernel_source(const std::string& text, const std::string& name, const KernelSources& sources) {
+    std::string source;
+    std::set<std::string> seen = {name};
+    append(source, text, name, sources, seen);
+    return source;
+}
+
+void check_folder(const KernelSources& sources) {
+    constexpr std::string_view kKernels = "kernels/";
+    for (const auto& [name, text] : embedded_files())
+        if (name.starts_with(kKernels) && name.ends_with(".cl")) kernel_source(name.substr(kKernels.size()), sources);
+}
+
+void check_patches(const KernelSources& sources) {
+    for (const SourcePatch& patch : sources.patches) kernel_file(patch.file, sources);
+}
+
+}  // namespace raya

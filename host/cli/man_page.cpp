@@ -1,0 +1,209 @@
+#include "host/cli/man_page.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+namespace raya {
+namespace {
+
+// Text of which man takes no letter for a request, nor for a typographic one.
+std::string plain(const std::string& text) {
+    std::string page;
+    for (const char c : text) switch (c) {
+            case '\\':
+                page += "\\e";
+                break;
+            case '-':
+                page += "\\-";
+                break;
+            case '\'':
+                page += "\\(aq";
+                break;
+            case '"':
+                page += "\\(dq";
+                break;
+            case '`':
+                page += "\\(ga";
+                break;
+            case '^':
+                page += "\\(ha";
+                break;
+            case '~':
+                page += "\\(ti";
+                break;
+            default:
+                page += c;
+        }
+    return page;
+}
+
+// A line of text; a dot in front would be a request.
+std::string line(const std::string& text) { return (text.starts_with('.') ? "\\&" : "") + plain(text) + '\n'; }
+
+std::string bold(const std::string& text) { return "\\fB" + plain(text) + "\\fR"; }
+std::string italic(const std::string& text) { return "\\fI" + plain(text) + "\\fR"; }
+
+std::string upper(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+    return text;
+}
+
+std::string heading(const std::string& text) { return ".SH " + upper(plain(text)) + '\n'; }
+
+std::string in_synopsis(const OptionText& o) {
+    std::string text = o.is_word() ? italic(o.names.front()) + (o.repeated ? " ..." : "")
+                                   : bold(o.names.front()) + ' ' + italic(o.value);
+    return o.required ? text : '[' + text + ']';
+}
+
+std::string synopsis(const CommandText& command, const std::string& path) {
+    std::string text = bold(path);
+    if (!command.commands.empty()) text += ' ' + italic("COMMAND");
+    for (const OptionText& word : command.words) text += ' ' + in_synopsis(word);
+    for (const OptionText& option : command.options)
+        if (option.required) text += ' ' + in_synopsis(option);
+    return text + " [" + italic("OPTIONS") + "]\n";
+}
+
+std::string entry(const OptionText& o) {
+    std::string names;
+    for (const std::string& name : o.names)
+        names += (names.empty() ? "" : ", ") + (name.starts_with('-') ? bold(name) : italic(name));
+    if (!o.is_flag() && !o.is_word()) names += ' ' + italic(o.value);
+    return ".TP\n" + names + '\n' + line(said_of(o));
+}
+
+std::string entries(const std::vector<OptionText>& options) {
+    std::string text;
+    for (const OptionText& option : options) text += entry(option);
+    return text;
+}
+
+// Options by their groups in help, each group below `make_heading` of its name.
+template <class Heading>
+std::string grouped(const CommandText& command, Heading&& make_heading) {
+    std::string text = command.words.empty() ? "" : make_heading("Arguments") + entries(command.words);
+    for (const std::string& group : groups_of(command)) {
+        text += make_heading(group);
+        for (const OptionText& o : command.options)
+            if (o.group == group) text += entry(o);
+    }
+    return text;
+}
+
+bool ask_alike(const CommandText& a, const CommandText& b) {
+    const auto alike = [](const std::vector<OptionText>& x, const std::vector<OptionText>& y) {
+        return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const OptionText& p, const OptionText& q) {
+            return p.names == q.names && p.value == q.value && p.usual == q.usual && p.help == q.help;
+        });
+    };
+    return alike(a.words, b.words) && alike(a.options, b.options);
+}
+
+std::string examples(const CommandText& command) {
+    std::string text;
+    for (const ExampleText& example : command.examples)
+        text += ".TP\n" + bold(example.command) + '\n' + line(example.says);
+    return text;
+}
+
+// Without the options of `all`, of which the page itself tells.
+CommandText without(CommandText command, const std::vector<OptionText>& all) {
+    std::erase_if(command.options, [&](const OptionText& o) {
+        return std::any_of(all.begin(), all.end(), [&](const OptionText& one) { return one.names == o.names; });
+    });
+    return command;
+}
+
+// The commands below one, with their options; those that take the same stand together.
+std::string commands_below(const CommandText& command, const std::string& path) {
+    std::string text = heading("Commands");
+    std::vector<const CommandText*> left;
+    for (const CommandText& one : command.commands) left.push_back(&one);
+    while (!left.empty()) {
+        const CommandText& first = *left.front();
+        const auto others =
+            std::stable_partition(left.begin(), left.end(), [&](const auto* one) { return ask_alike(*one, first); });
+        for (auto one = left.begin(); one != others; ++one)
+            text += ".TP\n" + synopsis(**one, path + ' ' + (*one)->name) + line((*one)->summary);
+        text += ".RS\n" + grouped(without(first, command.options), [](const std::string&) { return std::string(); });
+        if (!first.examples.empty()) text += ".TP\nExamples\n" + (".RS\n" + examples(first)) + ".RE\n";
+        text += ".RE\n";
+        left.erase(left.begin(), others);
+    }
+    return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string one; std::getline(in, one);) lines.push_back(one);
+    return lines;
+}
+
+// Indented lines: "  NAME   what it is" as an entry, others as they stand.
+std::string indented(const std::string& one) {
+    const std::string text = one.substr(std::min(one.find_first_not_of(' '), one.size()));
+    const std::size_t gap = text.find("  ");
+    if (gap == std::string::npos || text.starts_with("raya ")) return ".PP\n.EX\n" + line("    " + text) + ".EE\n";
+    return ".TP\n" + bold(text.substr(0, gap)) + '\n' + line(text.substr(text.find_first_not_of(' ', gap)));
+}
+
+// What stands below help, as sections.
+std::string closing(const std::string& footer) {
+    std::string text;
+    bool begins = true;
+    for (const std::string& one : lines_of(footer)) {
+        const std::size_t colon = one.find(':');
+        const bool titled = begins && colon != std::string::npos && !one.starts_with(' ');
+        if (titled) text += heading(one.substr(0, colon));
+        const std::string rest = titled ? one.substr(std::min(colon + 2, one.size())) : one;
+        if (!rest.empty()) text += rest.starts_with("  ") ? indented(rest) : line(rest);
+        begins = one.empty();
+    }
+    return text;
+}
+
+std::string beginning(const std::string& name, const CommandText& command, const std::string& path,
+                      const std::string& version) {
+    std::string summary = command.summary;
+    if (summary.starts_with(command.name + ' ')) summary.erase(0, command.name.size() + 1);
+    return fmt::format(
+               ".\\\" Made by raya manual, of the texts of --help.\n.TH {} 1 \"\" \"{}\" \"User Commands\"\n{}{} \\- "
+               "{}",
+               upper(plain(name)), version, heading("Name"), plain(name), line(summary)) +
+           heading("Synopsis") + synopsis(command, path) + heading("Description") + line(command.summary);
+}
+
+std::string reference(const std::string& name) { return ".BR " + plain(name) + " (1)"; }
+
+ManPage page_of(const CommandText& command, const CommandText& program, const std::string& version) {
+    const bool whole = &command == &program;
+    const std::string name = whole ? program.name : program.name + '-' + command.name;
+    const std::string path = whole ? program.name : program.name + ' ' + command.name;
+    std::string text = beginning(name, command, path, version);
+    if (!whole && !command.commands.empty()) text += commands_below(command, path);
+    if (whole) text += heading("Commands");
+    for (const CommandText& one : program.commands)
+        if (whole) text += ".TP\n" + reference(name + '-' + one.name) + '\n' + line(one.summary);
+    text += grouped(command, heading);
+    if (!command.examples.empty()) text += heading("Examples") + examples(command);
+    text += closing(command.footer) + heading("See also");
+    if (!whole) return {name, text + reference(program.name) + '\n'};
+    for (const CommandText& one : program.commands)
+        text += reference(name + '-' + one.name) + (&one == &program.commands.back() ? "\n" : " ,\n");
+    return {name, text};
+}
+
+}  // namespace
+
+std::vector<ManPage> man_pages(const CommandText& program, const std::string& name_and_version) {
+    std::vector<ManPage> pages = {page_of(program, program, name_and_version)};
+    for (const CommandText& command : program.commands) pages.push_back(page_of(command, program, name_and_version));
+    return pages;
+}
+
+}  // namespace raya

@@ -1,0 +1,127 @@
+#include "host/model/machine.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "host/error.hpp"
+#include "host/model/budget.hpp"
+#include "host/model/t805.hpp"
+
+namespace raya {
+namespace {
+
+// Kohata & Ito 1993. Marks: [P] printed there, [D] arithmetic on what is printed, [?] ours. No time of a transfer from
+// PE to PE over the bus is printed: [?] it has a link's rate and a rotation's synchronisation.
+Machine spa() {
+    return {
+        .name = "spa",
+        .title = "the SPA",
+        .topology = "ring+bus",                          // [P]
+        .pes = 256,                                      // [P] DSPs
+        .pe_memory_bytes = 32 * 1024,                    // [P]
+        .bounces = 8,                                    // [P] up to 8 reflections and refractions
+        .format = {6, 15, false},                        // [P] 22 bits; [?] how they are divided
+        .mapping = cyclic_mapping(16),                   // [P] the best
+        .cycle_ns = 100,                                 // [P] 20 MFLOPS
+        .link_words_per_s = 6e6,                         // [P] DMA
+        .rotation_sync_ms = 10. / 32 - 1e3 * 768 / 6e6,  // [D] Tables 3 and 4: 32 more rotations of 768 words, 10 ms
+        .host_words_per_s = 196'608 / 0.140};            // [D] Table 2: 256 x 256 pixels of 3 words in 140 ms
+}
+
+// An array and a mapping that the paper compares with its own, on PEs of the SPA without a limit to their memory, so
+// that loads can be compared. What times their own PEs and links would take is not known to us: they have none.
+Machine array_like(const std::string& name, const std::string& title, const std::string& topology,
+                   const MappingRule& mapping, std::uint32_t pes) {
+    Machine machine;
+    machine.name = name;
+    machine.title = title;
+    machine.topology = topology;
+    machine.pes = pes;
+    machine.format = spa().format;
+    machine.mapping = mapping;
+    return machine;
+}
+
+// [P] Each PE takes the next pixel from a root when it has finished; [?] as many PEs as the SPA has.
+Machine links() {
+    Machine machine =
+        array_like("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
+    machine.dynamic = DynamicPlan{.chunk = 1};
+    return machine;
+}
+
+// [?] The SPA without the memory limit, one PE a column; fp32 and a tree of boxes, as it is there for scenes that no
+// SPA could hold.
+Machine grande() {
+    Machine machine = spa();
+    machine.name = machine.title = "grande";
+    machine.pes = {};
+    machine.pe_memory_bytes = {};
+    machine.format = {};
+    machine.accel = {AccelKind::kBvh};
+    return machine;
+}
+
+// [P] Table 2's other SPA: one DSP, and the same host.
+Machine spa1() {
+    Machine machine = spa();
+    machine.name = "spa1";
+    machine.title = "the SPA with one DSP";
+    machine.pes = 1;
+    machine.mapping = cyclic_mapping(0);  // of no effect
+    return machine;
+}
+
+// Yoshitani & Yamazaki, about 1995. Marks: [P] printed there, [T] data sheet of the T805, [?] ours. What a node and its
+// links take is in machine/t805.hpp; the rates here are those of one link, one way.
+Machine torus() {
+    Machine machine;
+    machine.name = "torus";
+    machine.title = "the torus of transputers";
+    machine.kind = MachineKind::kTorus;                   // [P]
+    machine.topology = "torus3d";                         // [P] a torus; [?] six links, the T805 has four
+    machine.pes = 64;                                     // [P] T805s, one voxel each: 4 x 4 x 4
+    machine.pe_memory_bytes = 4 * 1024 * 1024;            // [?] of a T805 board
+    machine.bounces = 8;                                  // [?] as on the SPA; the paper stops at shadows
+    machine.format = {};                                  // [T] IEEE, single precision
+    machine.cycle_ns = kT805CycleNs;                      // [T] 25 MHz
+    machine.link_words_per_s = kT805OneWayBytesPerS / 4;  // [T]
+    return machine;
+}
+
+}  // namespace
+
+const std::vector<Machine>& machines() {
+    static const std::vector<Machine> all = {
+        spa(),
+        grande(),
+        spa1(),
+        // [P] 256 cells; every 16th pixel in both directions [D: n = 16 where P = n x n]
+        array_like("cap", "the array of the CAP, on PEs of the SPA", "2-D array", grid_mapping(16, 16), 256),
+        // [P] 64 nodes; every 8th pixel of every 8th line [D]
+        array_like("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA", "2-D array",
+                   grid_mapping(8, 8), 64),
+        links(),
+        torus(),
+    };
+    return all;
+}
+
+const Machine& machine_named(const std::string& name) {
+    const auto& all = machines();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Machine& m) { return m.name == name; });
+    if (found != all.end()) return *found;
+    std::vector<std::string> names;
+    for (const Machine& m : all) names.push_back(m.name);
+    throw UserError(fmt::format("--machine {}: no such machine, there are {}", name, fmt::join(names, ", ")));
+}
+
+std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events() {
+    std::array<std::uint32_t, RAYA_EVENTS> cycles{};
+    for (std::size_t event = 0; event < cycles.size(); ++event) cycles[event] = cycles_of(budgets()[event]);
+    return cycles;
+}
+
+}  // namespace raya

@@ -1,0 +1,89 @@
+#include "host/model/number_format.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw UserError(
+        fmt::format("--format {}: must be fp32, spa22 (e6m15), or eXmY with X = 5..8 exponent and Y = 4..21 fraction "
+                    "bits, and t to truncate",
+                    text));
+}
+
+// The number after `letter` at `at`; moves `at` behind it.
+int read_field(const std::string& text, std::size_t& at, char letter) {
+    if (at >= text.size() || text[at] != letter) refuse(text);
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data() + at + 1, text.data() + text.size(), value);
+    if (error != std::errc{}) refuse(text);
+    at = static_cast<std::size_t>(end - text.data());
+    return value;
+}
+
+constexpr int kDoubleFraction = 52, kDoubleBias = 1023;
+
+// Of a normal double.
+double power_of_two(int exponent) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFraction);
+}
+
+// To so many bits behind the leading one; of two that are equally near, the one that ends in 0. A carry out of the
+// fraction makes the next power of two, or infinity. Denormal doubles are below every format.
+double with_fraction_bits(double value, int bits, bool truncates) {
+    const int dropped = kDoubleFraction - bits;
+    auto pattern = std::bit_cast<std::uint64_t>(value);
+    const std::uint64_t unit = std::uint64_t{1} << dropped;
+    if (!truncates) pattern += unit / 2 - 1 + (pattern >> dropped & 1);
+    return std::bit_cast<double>(pattern & ~(unit - 1));
+}
+
+}  // namespace
+
+NumberFormat parse_format(const std::string& text) {
+    if (text == "fp32") return {};
+    if (text == "spa22") return {6, 15, false};
+    std::size_t at = 0;
+    NumberFormat format;
+    format.exponent_bits = read_field(text, at, 'e');
+    format.fraction_bits = read_field(text, at, 'm');
+    format.truncates = at < text.size() && text[at] == 't';
+    if (at + (format.truncates ? 1 : 0) != text.size()) refuse(text);
+    if (format.exponent_bits < 5 || format.exponent_bits > 8 || format.fraction_bits < 4 || format.fraction_bits > 21)
+        refuse(text);
+    return format;
+}
+
+std::string format_name(const NumberFormat& format) {
+    if (format.is_fp32()) return "fp32";
+    return fmt::format("e{}m{}{}", format.exponent_bits, format.fraction_bits, format.truncates ? "t" : "");
+}
+
+double smallest_number(const NumberFormat& format) { return std::ldexp(1.0, 2 - (1 << (format.exponent_bits - 1))); }
+
+double farthest_hit(const NumberFormat& format) {
+    constexpr int kOfFp32 = 60;
+    return std::ldexp(1.0, std::min((1 << (format.exponent_bits - 2)) - 1, kOfFp32));
+}
+
+float round_to_format(double value, const NumberFormat& format) {
+    if (std::isnan(value)) throw std::invalid_argument("NaN has no number in any format");
+    const int highest = (1 << (format.exponent_bits - 1)) - 1, lowest = 1 - highest;
+    const double rounded = with_fraction_bits(value, format.fraction_bits, format.truncates);
+    const double largest = (2 - power_of_two(-format.fraction_bits)) * power_of_two(highest);
+    if (std::abs(rounded) > largest) return static_cast<float>(std::copysign(largest, value));
+    if (std::abs(rounded) < power_of_two(lowest)) return static_cast<float>(std::copysign(0.0, value));
+    return static_cast<float>(rounded);
+}
+
+}  // namespace raya

@@ -1,0 +1,76 @@
+// A program of kernels that are checked, and the buffers that they take.
+#pragma once
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "host/cl/commands.hpp"
+#include "host/verify/words.hpp"
+
+namespace raya {
+
+/// Rows of a check are a multiple of this, so that all widths of lanes take the same rows.
+inline constexpr std::size_t kMostLanes = 16;
+
+class CheckRunner {
+  public:
+    /// `lanes`: V of the build.
+    CheckRunner(Session& session, Program program, std::uint32_t lanes = 1)
+        : session_(session), program_(std::move(program)), lanes_(lanes) {}
+
+    /// The program's build options.
+    const std::string& options() const { return program_.options(); }
+
+    /// A buffer that holds `values`.
+    template <class T>
+    Buffer<T> filled(const std::string& name, const std::vector<T>& values) {
+        Buffer<T> buffer = session_.buffer<T>(name, values.size());
+        session_.write(name, buffer, values);
+        return buffer;
+    }
+
+    /// A buffer of `count` elements that are all `value`.
+    template <class T>
+    Buffer<T> constant(const std::string& name, std::size_t count, T value) {
+        Buffer<T> buffer = session_.buffer<T>(name, count);
+        session_.fill(name, buffer, value);
+        return buffer;
+    }
+
+    /// A buffer for results, in which a kernel that does nothing leaves no answer.
+    Buffer<std::uint32_t> poisoned(const std::string& name, std::size_t count) {
+        return constant(name, count, kPoison);
+    }
+
+    template <class T>
+    std::vector<T> read(const Buffer<T>& buffer) {
+        std::vector<T> values(buffer.size());
+        session_.read(buffer.name(), buffer, values);
+        return values;
+    }
+
+    /// Launches a kernel, of which `Args` are the arguments' types.
+    template <class... Args>
+    void run(const std::string& kernel, std::size_t groups, std::size_t group_size,
+             std::type_identity_t<Args>... args) {
+        auto function = program_.kernel<Args...>(kernel);
+        session_.launch(kernel, function, groups, group_size, args...);
+    }
+
+    /// The same for one that takes V rows of `rows` in each work-group of one work-item.
+    template <class... Args>
+    void run_rows(const std::string& kernel, std::size_t rows, std::type_identity_t<Args>... args) {
+        if (rows % kMostLanes != 0) throw std::invalid_argument("rows must be a multiple of the widest lanes");
+        run<Args...>(kernel, rows / lanes_, 1, args...);
+    }
+
+  private:
+    Session& session_;
+    Program program_;
+    std::uint32_t lanes_;
+};
+
+}  // namespace raya

@@ -1,0 +1,158 @@
+#include "host/verify/hits.hpp"
+
+#include <fmt/core.h>
+
+#include <bit>
+
+#include "host/accel/grid.hpp"
+#include "host/cl/kernels.hpp"
+#include "host/embedded.hpp"
+#include "host/model/unit_text.hpp"
+#include "host/scene/nff_reader.hpp"
+#include "host/scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+Program built(Session& session, const HitBuild& build) {
+    KernelOptions options;
+    options.lanes = build.lanes;
+    options.format = build.format;
+    options.words_local = false;
+    options.accel = build.grid ? RAYA_ACCEL_GRID : RAYA_ACCEL_NONE;
+    options.filter = build.filter;
+    return Kernels(session, options, build.sources).program("checks/hits.cl");
+}
+
+PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
+    JobSettings settings;
+    settings.image = {16, 16};
+    settings.format = format;
+    PackedJob job = pack_job(scene, settings);
+    append_grid(job, accel_partition(job, format, {.kind = AccelKind::kGrid, .divisions = Divisions{6, 5, 4}}));
+    return job;
+}
+
+// From around the scene towards its middle, with a direction that is normalised as well as the format can.
+Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
+    constexpr std::uint64_t kSeed = 1986;
+    SplitMix random(kSeed);
+    const auto rounded = [&](double x) {
+        return format.is_fp32() ? static_cast<float>(x) : round_to_format(x, format);
+    };
+    Rays rays;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<float, 3> origin{}, direction{};
+        Vec3 to{};
+        for (int axis = 0; axis < 3; ++axis) {
+            origin[std::size_t(axis)] = rounded(random.uniform(-extent, extent) * (i % 3 == 0 ? 0.3 : 1));
+            to[axis] = random.uniform(-0.3, 0.3) * extent - origin[std::size_t(axis)];
+        }
+        to.normalize();
+        for (int axis = 0; axis < 3; ++axis) direction[std::size_t(axis)] = rounded(to[axis]);
+        rays.add(origin, direction, kUsualLimit);
+    }
+    return rays;
+}
+
+}  // namespace
+
+void Rays::add(const std::array<float, 3>& origin, const std::array<float, 3>& direction, float limit) {
+    words.insert(words.end(), origin.begin(), origin.end());
+    words.insert(words.end(), direction.begin(), direction.end());
+    words.push_back(limit);
+}
+
+void Rays::pad() {
+    while (count() % kMostLanes != 0) add({0, 0, 0}, {0, 0, 1}, 0);
+}
+
+std::string Rays::text(std::size_t ray) const {
+    const float* w = &words[ray * kWords];
+    return fmt::format("origin ({:.9g}, {:.9g}, {:.9g}), direction ({:.9g}, {:.9g}, {:.9g}), limit {:.9g}", w[0], w[1],
+                       w[2], w[3], w[4], w[5], w[6]);
+}
+
+std::string Hits::text(std::size_t ray) const {
+    const std::string t = fmt::format("t 0x{:08x} = {:.9g}", distances[ray], std::bit_cast<float>(distances[ray]));
+    return objects[ray] == kNothing ? "nothing, " + t : fmt::format("object {}, {}", objects[ray], t);
+}
+
+Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job,
+               const Rays& rays) {
+    const auto words = runner.filled("job", job);
+    const auto from = runner.filled("rays", rays.words);
+    auto objects = runner.poisoned("objects", rays.count()), distances = runner.poisoned("distances", rays.count());
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&, Buffer<std::uint32_t>&>(
+        kernel, rays.count(), words, from, objects, distances);
+    return {runner.read(objects), runner.read(distances)};
+}
+
+std::string HitBuild::name() const {
+    return fmt::format("{}{}, {}", format_name(format), filter ? " filtered" : "", counted(lanes, "lane"));
+}
+
+HitRunner::HitRunner(Session& session, const HitBuild& build)
+    : CheckRunner(session, built(session, build), build.lanes), format_(build.format), grid_(build.grid) {}
+
+Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
+                     const std::function<std::string(std::size_t)>& what, const std::string& done) {
+    std::size_t wrong = 0, first = 0;
+    for (std::size_t i = count; i-- > 0;) {
+        if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
+        ++wrong;
+        first = i;
+    }
+    if (wrong == 0) return passed(done);
+    return failed(fmt::format("{} of {} rays wrong", wrong, count),
+                  {.where = fmt::format("{}\n{}", what(first), rays.text(first)),
+                   .expected = expected.text(first),
+                   .got = got.text(first)});
+}
+
+Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
+    const PackedJob job = job_with_grid(known.scene, runner.format());
+    Rays rays;
+    Hits expected;
+    for (const KnownHit& hit : known.hits) {
+        rays.add(hit.origin, hit.direction, hit.limit);
+        expected.objects.push_back(hit.object);
+        expected.distances.push_back(std::bit_cast<std::uint32_t>(hit.object == kNothing ? hit.limit : hit.t));
+    }
+    rays.pad();
+    Verdict verdict;
+    std::vector<const char*> kernels = {"hits_of_all"};
+    if (runner.grid()) kernels.push_back("hits_by_search");
+    for (const char* kernel : kernels) {
+        const Hits got = find_hits(runner, kernel, job.words(), rays);
+        const auto what = [&](std::size_t i) {
+            return fmt::format("{}: {} ({})", known.name, known.hits[i].what, kernel);
+        };
+        verdict =
+            compare_hits(expected, got, rays, known.hits.size(), what,
+                         fmt::format("{} rays, {}without grid", known.hits.size(), runner.grid() ? "with and " : ""));
+        if (verdict.outcome != Outcome::kPass) break;
+    }
+    return verdict;
+}
+
+Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_each) {
+    std::size_t struck = 0;
+    for (const std::string& name : scenes) {
+        const std::string file = fmt::format("scenes/{}.nff", name);
+        const Scene scene = parse_nff(embedded_files().at(file), file);
+        const PackedJob job = job_with_grid(scene, runner.format());
+        const Rays rays = random_rays(runner.format(), scene_extent(scene), rays_each);
+        const Hits all = find_hits(runner, "hits_of_all", job.words(), rays);
+        const Hits walked = find_hits(runner, "hits_by_search", job.words(), rays);
+        const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
+        const Verdict verdict = compare_hits(all, walked, rays, rays_each, what, "");
+        if (verdict.outcome != Outcome::kPass) return verdict;
+        for (const std::uint32_t object : all.objects) struck += object != kNothing;
+    }
+    const std::size_t all = scenes.size() * rays_each;
+    if (struck < rays_each) return failed(fmt::format("only {} of {} rays hit anything", struck, all), {});
+    return passed(fmt::format("{} rays, {} hits, with and without grid", all, struck));
+}
+
+}  // namespace raya

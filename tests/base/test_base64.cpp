@@ -1,0 +1,19 @@
+// RFC 4648's own examples.
+#include <catch2/catch.hpp>
+
+#include "host/base/base64.hpp"
+
+namespace raya {
+namespace {
+
+TEST_CASE("bytes become the text that RFC 4648 says", "[base64]") {
+    CHECK(base64("") == "");
+    CHECK(base64("f") == "Zg==");
+    CHECK(base64("fo") == "Zm8=");
+    CHECK(base64("foo") == "Zm9v");
+    CHECK(base64("foobar") == "Zm9vYmFy");
+    CHECK(base64("\xff\xfe\xfd\xfb\x7f") == "//79+38=");
+}
+
+}  // namespace
+}  // namespace raya

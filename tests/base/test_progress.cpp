@@ -1,0 +1,39 @@
+// What a person at a terminal is shown of how far a command has come.
+#include <catch2/catch.hpp>
+
+#include "host/base/progress.hpp"
+
+namespace raya {
+namespace {
+
+TEST_CASE("a stage of which no share is known shows how long it runs", "[progress]") {
+    CHECK(progress_line("building kernels", {}, 0) == "building kernels ... 0 s");
+    CHECK(progress_line("building kernels", {}, 12.4) == "building kernels ... 12 s");
+    CHECK(progress_line("rendering", Done{0.0009, 3}, 3) == "rendering ... 3 s");
+}
+
+TEST_CASE("a share is a bar, and what is left is told from it", "[progress]") {
+    CHECK(progress_line("rendering", Done{0.25, 10}, 10) ==
+          "[" + std::string(10, '#') + std::string(30, '.') + "]  25 %  30 s left");
+    CHECK(progress_line("rendering", Done{0.001, 1}, 1) == "[" + std::string(40, '.') + "]   0 %  999 s left");
+}
+
+TEST_CASE("while nothing new is known, what is left grows less, and then nothing is said of it", "[progress]") {
+    const std::string quarter = "[" + std::string(10, '#') + std::string(30, '.') + "]  25 %  ";
+    CHECK(progress_line("rendering", Done{0.25, 10}, 25) == quarter + "15 s left");
+    CHECK(progress_line("rendering", Done{0.25, 10}, 60) == quarter + "60 s so far");
+}
+
+TEST_CASE("all of the work is no more than 99 percent while it runs", "[progress]") {
+    CHECK(progress_line("rendering", Done{1, 10}, 10) == "[" + std::string(40, '#') + "]  99 %  10 s so far");
+}
+
+TEST_CASE("a bar without a terminal is not active", "[progress]") {
+    ProgressBar unwanted(false, "reading");
+    CHECK_FALSE(unwanted.active());
+    unwanted.stage("rendering");
+    unwanted.update(0.5);
+}
+
+}  // namespace
+}  // namespace raya

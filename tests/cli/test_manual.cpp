@@ -1,0 +1,104 @@
+// Manual pages and completions of a small command line, with texts that shells and man would take for their own.
+#include <catch2/catch.hpp>
+
+#include "host/cli/completion.hpp"
+#include "host/cli/man_page.hpp"
+
+namespace raya {
+namespace {
+
+using Kind = ValueText::Kind;
+
+OptionText option(std::vector<std::string> names, std::string value, std::string help = "Says so") {
+    OptionText text;
+    text.names = std::move(names);
+    text.value = std::move(value);
+    text.help = std::move(help);
+    text.group = "Options";
+    return text;
+}
+
+CommandText small_program() {
+    CommandText draw;
+    draw.name = "draw";
+    draw.summary = "Draw what it's told";
+    draw.options = {option({"-o", "--output"}, "FILE.json", ".png of \"a\\b\" `c` ~d^ it's [x]: see $HOME; more"),
+                    option({"--way"}, "left|right")};
+    draw.footer =
+        "Exit codes: 0 done, 2 not.\n\nExamples:\n  raya draw -o a.json\n  raya draw --way left\n\nEnvironment:\n"
+        "  RAYA_X   what it is\n";
+    CommandText program;
+    program.name = "raya";
+    program.summary = "raya draws";
+    program.commands = {draw};
+    return program;
+}
+
+TEST_CASE("what a value may be follows from how help calls it", "[manual]") {
+    const auto value = [](const std::string& called) { return value_of(option({"--x"}, called)); };
+    CHECK(value("ring|bus-broadcast").words == std::vector<std::string>{"ring", "bus-broadcast"});
+    CHECK(value("none|bvh|grid[:AxBxC]").words == std::vector<std::string>{"none", "bvh", "grid"});
+    CHECK(value("none,grid").kind == Kind::kList);
+    CHECK(value("none,grid").words == std::vector<std::string>{"none", "grid"});
+    CHECK(value("FILE.json[.gz]").extension == ".json");
+    CHECK(value("FILE.csv.gz").extension == ".csv.gz");
+    for (const char* file : {"SCENE.nff", "IMAGE", "FILE.html", "FILE"}) CHECK(value(file).kind == Kind::kFile);
+    CHECK(value("IMAGE").extension.empty());
+    CHECK(value("DIR").kind == Kind::kFolder);
+    for (const char* other : {"N|WxH", "p", "ALPHA,BETA", "1,2,...", "NAME,...", "BYTES", ""})
+        CHECK(value(other).kind == Kind::kOther);
+    OptionText named = option({"--x"}, "NAME");
+    named.words = {"a", "b"};
+    CHECK(value_of(named).kind == Kind::kWords);
+    named.repeated = true;
+    CHECK(value_of(named).kind == Kind::kList);
+}
+
+TEST_CASE("a help text is cut to its first part, between words", "[manual]") {
+    CHECK(brief("Size in pixels; default: 5") == "Size in pixels");
+    CHECK(brief("One. Two") == "One");
+    CHECK(brief("as they are 1.5") == "as they are 1.5");
+    const std::string cut = brief("word word word word", 12);
+    CHECK(cut == "word ...");
+    CHECK(brief(std::string(100, 'x'), 20) == "xxxxxxxxxxxxxxxx ...");
+}
+
+TEST_CASE("a page holds help's texts, with what man would take for its own escaped", "[manual]") {
+    const std::vector<ManPage> pages = man_pages(small_program(), "raya 1.2");
+    REQUIRE(pages.size() == 2);
+    CHECK(pages[0].name == "raya");
+    CHECK_THAT(pages[0].text, Catch::Contains(".SH NAME\nraya \\- draws\n") && Catch::Contains("\"raya 1.2\"") &&
+                                  Catch::Contains(".BR raya\\-draw (1)\nDraw what it\\(aqs told\n"));
+    CHECK(pages[1].name == "raya-draw");
+    for (const char* text :
+         {"\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fIFILE.json\\fR\n\\&.png of \\(dqa\\eb\\(dq \\(gac\\(ga \\(tid\\(ha "
+          "it\\(aqs [x]",
+          ".SH EXIT CODES\n0 done, 2 not.\n", ".SH EXAMPLES\n.PP\n.EX\n    raya draw \\-o a.json\n.EE\n",
+          ".SH ENVIRONMENT\n.TP\n\\fBRAYA_X\\fR\nwhat it is\n", ".SH SEE ALSO\n.BR raya (1)\n"})
+        CHECK_THAT(pages[1].text, Catch::Contains(text));
+}
+
+TEST_CASE("completions quote what shells would take for their own", "[manual]") {
+    const CommandText program = small_program();
+    CHECK_THAT(completion_script(program, "bash"), Catch::Contains("'raya draw')") &&
+                                                       Catch::Contains("-o|--output) value='files .json' ;;") &&
+                                                       Catch::Contains("--way) value='words left right' ;;"));
+    CHECK_THAT(
+        completion_script(program, "zsh"),
+        Catch::Contains(
+            R"-('(-o --output)--output=[.png of "a\\b" `c` ~d^ it'\''s \[x\]\: see $HOME]:FILE.json:_files -g "*.json(-.)"')-"));
+    CHECK_THAT(
+        completion_script(program, "fish"),
+        Catch::Contains(
+            R"-(-s o -l output -x -a '(__fish_complete_suffix ".json")' -d '.png of "a\\b" `c` ~d^ it\'s [x]: see $HOME')-"));
+    for (const std::string& shell : completed_shells()) CHECK_FALSE(completion_script(program, shell).empty());
+    CHECK_THROWS(completion_script(program, "tcsh"));
+}
+
+TEST_CASE("commands that take the same stand in one case", "[manual]") {
+    CHECK(shell_cases({{"a b", "x\n"}, {"c", "y\n"}, {"it's", "x\n"}}) ==
+          "    'a b'|'it'\\''s')\nx\n        ;;\n    'c')\ny\n        ;;\n");
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,137 @@
+// The instruction budgets: events counted by hand, sums, and whether the seeds and steps give the bits that they
+// promise.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "host/model/budget.hpp"
+#include "host/scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+const Budget& budget_of(int event) { return budgets()[static_cast<std::size_t>(event)]; }
+
+bool has_numbers(const Budget& b) { return b.multiply_accumulates + b.divisions + b.roots + b.moves + b.branches > 0; }
+
+std::uint64_t cycles_of(const Operations& sum) {
+    return sum.multiply_accumulates + kDivisionCycles * sum.divisions + kRootCycles * sum.roots + sum.moves +
+           kBranchCycles * sum.branches;
+}
+
+/// log2 of the largest relative error of f over [1, 4), both binades of a root's table.
+template <class Relative>
+double error_bits(Relative&& relative) {
+    double worst = 0;
+    for (int i = 0; i < 3 << 16; ++i) worst = std::max(worst, std::abs(relative(1 + std::ldexp(i, -16))));
+    return std::log2(worst);
+}
+
+/// `value` with 8 fraction bits after its first bit, as a table's word might hold it.
+double word(double value) {
+    const int exponent = std::ilogb(value);
+    return std::ldexp(std::nearbyint(std::ldexp(value, 9 - exponent)), exponent - 9);
+}
+
+}  // namespace
+
+TEST_CASE("budgets come in the order of the events; only a count for the report is free", "[machine]") {
+    for (int event = 0; event < RAYA_EVENTS; ++event) {
+        CAPTURE(event);
+        CHECK(budget_of(event).event == event);
+        CHECK(has_numbers(budget_of(event)) == (event != RAYA_PRIMARY_HITS));
+        CHECK_FALSE(std::string(budget_of(event).why).empty());
+        CHECK(cycles_of_events()[static_cast<std::size_t>(event)] == cycles_of(budget_of(event)));
+    }
+}
+
+// Division: seed 3, e = 1 - b y, y + e y, a y. Root: seed 3, x/2, y y, 3/2 - (x/2)(y y), y times that, x y. A
+// branch: 3.
+TEST_CASE("cycles of one event, counted by hand", "[machine]") {
+    CHECK(kDivisionCycles == 6);
+    CHECK(kRootCycles == 8);
+    CHECK(kBranchCycles == 3);
+    const auto cycles = cycles_of_events();
+    CHECK(cycles[RAYA_SPHERE_TESTS] == 12 + 3);        // three dot products' worth and a difference; one branch
+    CHECK(cycles[RAYA_PLANE_TESTS] == 7 + 6 + 2 * 3);  // two dot products, a comparison; a division; two branches
+    CHECK(cycles[RAYA_POLYGON_TESTS] == 24 + 6 + 2 + 2 + 5 * 3);  // corners, edges, plane; two moves; five branches
+    CHECK(cycles[RAYA_CONE_TESTS] == 40 + 6 + 2 * 3);
+    CHECK(cycles[RAYA_SHADOW] == 12 + 6 + 8 + 4 + 5 * 3);
+    CHECK(cycles[RAYA_SHADOW_HITS] == 3 + 8 + 2 * 3);
+    CHECK(cycles[RAYA_PRIMARY] == 12 + 6 + 8 + 16 + 3 * 3);
+    CHECK(cycles[RAYA_REFLECTED] == 1 + 10 + 2 * 3);
+    CHECK(cycles[RAYA_REFRACTED] == 24 + 2 * 6 + 2 * 8 + 18 + 4 * 3);
+    CHECK(cycles[RAYA_SHADED] == 43 + 6 + 2 * 8 + 2 + 10 * 3);
+    CHECK(cycles[RAYA_LIT] == 15 + 2 * 3);
+    CHECK(cycles[RAYA_HIGHLIGHTS] == 22 + 6 + 5 + 3);
+}
+
+TEST_CASE("operations of many events add up to their cycles", "[machine]") {
+    constexpr std::uint64_t kSeed = 5;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 500; ++i) {
+        CAPTURE(kSeed, i);
+        EventCounts events{};
+        std::uint64_t cycles = 0;
+        for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+            events[event] = random.next() >> (24 + random.next() % 40);  // < 2^40
+            cycles += events[event] * cycles_of_events()[event];
+        }
+        CHECK(cycles_of(operations_of(events)) == cycles);
+    }
+    CHECK(cycles_of(operations_of({})) == 0);
+}
+
+TEST_CASE("operations of one event are its budget's", "[machine]") {
+    for (const Budget& b : budgets()) {
+        EventCounts events{};
+        events[static_cast<std::size_t>(b.event)] = 7;
+        const Operations sum = operations_of(events);
+        CAPTURE(b.event);
+        CHECK(sum.multiply_accumulates == 7 * b.multiply_accumulates);
+        CHECK(sum.divisions == 7 * b.divisions);
+        CHECK(sum.roots == 7 * b.roots);
+        CHECK(sum.moves == 7 * b.moves);
+        CHECK(sum.branches == 7 * b.branches);
+    }
+}
+
+// A pixel of the filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42.
+// A comparison: 4 sides x 3 colours x 6, one move, 16 branches: 121.
+TEST_CASE("smoothing takes each pixel of a share the same", "[machine]") {
+    for (const std::uint64_t pixels : {0ull, 1ull, 256ull, 1ull << 40}) {
+        CAPTURE(pixels);
+        CHECK(filter_cycles(pixels) == 42 * pixels);
+        CHECK(compare_cycles(pixels) == 121 * pixels);
+    }
+}
+
+TEST_CASE("a seed of 256 words and one Newton step give the bits that the budget promises", "[machine]") {
+    // 8 bits of the significand choose the word, that of the interval's middle.
+    const auto reciprocal_seed = [](double b) {
+        const int exponent = std::ilogb(b);
+        const double significand = std::ldexp(b, -exponent);
+        return std::ldexp(word(1 / ((std::floor(significand * 256) + 0.5) / 256)), -exponent);
+    };
+    const auto reciprocal = [&](double b) {
+        const double y = reciprocal_seed(b);
+        return y + (1 - b * y) * y;
+    };
+    // The exponent's lowest bit and 7 of the significand: [1, 2) and [2, 4).
+    const auto root_seed = [](double x) {
+        const double step = x < 2 ? 128 : 64;
+        return word(1 / std::sqrt((std::floor(x * step) + 0.5) / step));
+    };
+    const auto root = [&](double x) {
+        const double y = root_seed(x);
+        return x * y * (1.5 - 0.5 * x * y * y);
+    };
+    CHECK(error_bits([&](double b) { return b * reciprocal_seed(b) - 1; }) < -8);
+    CHECK(error_bits([&](double b) { return b * reciprocal(b) - 1; }) < -16);
+    CHECK(error_bits([&](double x) { return std::sqrt(x) * root_seed(x) - 1; }) < -8);
+    CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) < std::log2(1.5) - 16);
+    CHECK(error_bits([&](double x) { return root(x) / std::sqrt(x) - 1; }) > -23);  // and no more than they can
+}
+
+}  // namespace raya

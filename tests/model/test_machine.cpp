@@ -1,0 +1,100 @@
+// The machines' descriptions.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "host/error.hpp"
+#include "host/model/machine.hpp"
+
+using namespace raya;
+using Catch::Contains;
+
+TEST_CASE("the SPA is the paper's, and comes first", "[machine]") {
+    const Machine& spa = machine_named("spa");  // Kohata & Ito 1993
+    CHECK(machines().front().name == "spa");
+    CHECK(spa.pes == 256u);
+    CHECK(spa.mapping == cyclic_mapping(16));
+    CHECK(spa.pe_memory_bytes == 32u * 1024);
+    CHECK(spa.bounces == 8);
+    CHECK(spa.topology == "ring+bus");
+}
+
+TEST_CASE("grande is the same array without the limits", "[machine]") {
+    const Machine& grande = machine_named("grande");
+    CHECK_FALSE(grande.pes.has_value());
+    CHECK_FALSE(grande.pe_memory_bytes.has_value());
+    CHECK(grande.mapping == machine_named("spa").mapping);
+    CHECK(grande.bounces == machine_named("spa").bounces);
+}
+
+TEST_CASE("the SPA's rates are those of the paper's tables", "[machine]") {
+    const Machine& spa = machine_named("spa");
+    CHECK(spa.cycle_ns == 100.0);
+    CHECK(spa.link_words_per_s == 6e6);
+    CHECK(spa.rotation_sync_ms.value() == 0.1845);  // 10 ms / 32 - 768 / 6e6 s
+    CHECK(spa.host_words_per_s.value() == Approx(1.40e6).epsilon(0.005));
+    for (const char* same : {"spa1", "grande"}) {
+        CAPTURE(same);
+        CHECK(machine_named(same).cycle_ns == spa.cycle_ns);
+        CHECK(machine_named(same).link_words_per_s == spa.link_words_per_s);
+        CHECK(machine_named(same).rotation_sync_ms == spa.rotation_sync_ms);
+        CHECK(machine_named(same).host_words_per_s == spa.host_words_per_s);
+        CHECK(machine_named(same).mapping.has_slots());
+    }
+    CHECK(machine_named("spa1").pes == 1u);
+    CHECK(machine_named("spa1").pe_memory_bytes == spa.pe_memory_bytes);
+}
+
+TEST_CASE("the arrays of others have their mapping, the SPA's numbers and no times", "[machine]") {
+    struct Row {
+        const char* name;
+        MappingRule mapping;
+        std::optional<DynamicPlan> dynamic;
+        std::uint32_t pes;
+    };
+    for (const Row& row : {Row{"cap", grid_mapping(16, 16), {}, 256}, Row{"pixel-machine", grid_mapping(8, 8), {}, 64},
+                           Row{"links", cyclic_mapping(0), DynamicPlan{1, 0, 0}, 256}}) {
+        CAPTURE(row.name);
+        const Machine& machine = machine_named(row.name);
+        CHECK(machine.mapping == row.mapping);
+        CHECK(machine.dynamic == row.dynamic);
+        CHECK(machine.pes == row.pes);
+        CHECK(machine.format == machine_named("spa").format);
+        CHECK_FALSE(machine.pe_memory_bytes.has_value());
+        CHECK_FALSE(
+            (machine.cycle_ns || machine.link_words_per_s || machine.rotation_sync_ms || machine.host_words_per_s));
+        CHECK_THAT(machine.title, Contains("on PEs of the SPA"));
+    }
+}
+
+TEST_CASE("the torus is the paper's 64 transputers, and no ring", "[machine]") {
+    const Machine& torus = machine_named("torus");  // Yoshitani & Yamazaki
+    CHECK(torus.pes == 64u);
+    CHECK(torus.pe_memory_bytes == 4u << 20);
+    CHECK(torus.bounces == 8);
+    CHECK(torus.format.is_fp32());
+    CHECK(torus.cycle_ns == 40.0);
+    CHECK(torus.link_words_per_s == 425e3);
+    for (const Machine& machine : machines()) {
+        CAPTURE(machine.name);
+        CHECK((machine.kind == MachineKind::kTorus) == (machine.name == "torus"));
+        CHECK((machine.kind == MachineKind::kTorus) == (machine.topology == "torus3d"));
+    }
+}
+
+TEST_CASE("every machine is found by its own name, and no other", "[machine]") {
+    std::set<std::string> names;
+    for (const Machine& machine : machines()) {
+        CHECK(&machine_named(machine.name) == &machine);
+        CHECK_FALSE(machine.title.empty());
+        names.insert(machine.name);
+    }
+    CHECK(names.size() == machines().size());
+    for (const std::string wrong : {"", "SPA", "spa ", "cray"}) {
+        CAPTURE(wrong);
+        CHECK_THROWS_AS(machine_named(wrong), UserError);
+        CHECK_THROWS_WITH(machine_named(wrong),
+                          Contains("--machine " + wrong + ": no such machine") && Contains("spa, grande"));
+    }
+}

@@ -1,0 +1,101 @@
+// The T805's time model: cycles of events and messages counted by hand, and links both ways.
+#include <catch2/catch.hpp>
+#include <cstdint>
+
+#include "host/model/budget.hpp"
+#include "host/model/t805.hpp"
+#include "host/scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+const T805Work& work_of(std::size_t event) { return t805_work()[event]; }
+
+// What a number of operations take, each with its operand of 4 cycles: addition 10, multiplication 15, division 20,
+// root 123.
+std::uint32_t arithmetic(std::uint32_t additions, std::uint32_t multiplications, std::uint32_t divisions = 0,
+                         std::uint32_t roots = 0) {
+    return 10 * additions + 15 * multiplications + 20 * divisions + 123 * roots;
+}
+
+// 4 cycles for each word of a packet that is made, 8 for a move, 6 for a branch.
+std::uint32_t control(std::uint32_t moves, std::uint32_t branches, std::uint32_t packet_words = 0) {
+    return 8 * moves + 6 * branches + 4 * packet_words;
+}
+
+}  // namespace
+
+// A sum of n products is n multiply-accumulates of the budget; here n multiplications and n - 1 additions, n where
+// something is added to it.
+TEST_CASE("the T805 does what the instruction budgets have, split into additions and multiplications", "[machine]") {
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+        CAPTURE(event);
+        const Budget& budget = budgets()[event];
+        const T805Work& work = work_of(event);
+        CHECK(work.event == static_cast<int>(event));
+        CHECK(work.multiplications <= budget.multiply_accumulates);
+        CHECK(work.additions <= budget.multiply_accumulates);
+        CHECK(work.additions + work.multiplications >= budget.multiply_accumulates);
+        CHECK((t805_cycles()[event] == 0) == (event == RAYA_PRIMARY_HITS));
+    }
+}
+
+TEST_CASE("cycles of one event on a T805, counted by hand", "[machine]") {
+    const auto cycles = t805_cycles();
+    // 9 products; 3 differences, 2 of b, 3 of l, 3 of the discriminant; one branch
+    CHECK(cycles[RAYA_SPHERE_TESTS] == arithmetic(11, 9) + control(0, 1));
+    // n.D: 3 products, 2 additions; d - n.O: 3 and 3; a comparison; a division; two branches
+    CHECK(cycles[RAYA_PLANE_TESTS] == arithmetic(6, 6, 1) + control(0, 2));
+    CHECK(cycles[RAYA_POLYGON_TESTS] == arithmetic(26 + 2, 12 + 0, 0) + control(2, 5));
+    CHECK(cycles[RAYA_SHADOW] == arithmetic(7, 9, 1, 1) + control(4, 5, 16));
+    CHECK(cycles[RAYA_PRIMARY] == arithmetic(8, 12, 1, 1) + control(16, 3, 16));
+    CHECK(cycles[RAYA_REFLECTED] == arithmetic(0, 1) + control(10, 2, 16));
+    CHECK(cycles[RAYA_REFRACTED] == arithmetic(13, 23, 2, 2) + control(18, 4, 16));
+    CHECK(cycles[RAYA_SHADED] == arithmetic(30, 31, 1, 2) + control(2, 10, 8));
+    CHECK(cycles[RAYA_LIT] == arithmetic(7, 15) + control(0, 2, 8));
+    CHECK(cycles[RAYA_STEPS] == arithmetic(6, 2) + control(2, 4));
+    CHECK(cycles[RAYA_WALKS] == arithmetic(25, 18, 3) + control(6, 4));
+    CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
+}
+
+// A packet of 30 words takes 14 more stores; a ray's one return of 6 words, two stores less, and none for a light.
+TEST_CASE("what packets are charged for is stored where they are made", "[machine]") {
+    const auto moved = t805_cycles(), charged = t805_cycles({30, true});
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+        CAPTURE(event);
+        const bool ray =
+            event == RAYA_PRIMARY || event == RAYA_REFLECTED || event == RAYA_REFRACTED || event == RAYA_SHADOW;
+        const int more = ray ? 14 * 4 : event == RAYA_SHADED ? -2 * 4 : event == RAYA_LIT ? -8 * 4 : 0;
+        CHECK(static_cast<int>(charged[event]) - static_cast<int>(moved[event]) == more);
+    }
+    CHECK(PacketCharge{}.return_words() == RAYA_RETURN_WORDS);
+}
+
+TEST_CASE("a message takes 19 cycles of the processor and 2 for each word", "[machine]") {
+    CHECK(t805_message_cycles(0, 0) == 0);
+    CHECK(t805_message_cycles(1, 16) == 51);
+    CHECK(t805_message_cycles(1, 8) == 35);
+    CHECK(t805_message_cycles(1000, 16'000) == 51'000);
+}
+
+// 425,000 words a second one way, 600,000 both ways together.
+TEST_CASE("a link carries both ways at once until one of them is done", "[machine]") {
+    CHECK(t805_link_ms(425, 0) == Approx(1).epsilon(1e-12));
+    CHECK(t805_link_ms(0, 425) == Approx(1).epsilon(1e-12));
+    CHECK(t805_link_ms(300, 300) == Approx(1).epsilon(1e-12));
+    CHECK(t805_link_ms(300 + 425, 300) == Approx(2).epsilon(1e-12));
+    CHECK(t805_link_ms(0, 0) == 0);
+    constexpr std::uint64_t kSeed = 17;
+    SplitMix random(kSeed);
+    for (int i = 0; i < 500; ++i) {
+        CAPTURE(kSeed, i);
+        const std::uint64_t there = random.next() >> (24 + random.next() % 40), back = random.next() >> (24 + i % 40);
+        const double time = t805_link_ms(there, back), more = static_cast<double>(std::max(there, back));
+        CHECK(time == t805_link_ms(back, there));
+        // No sooner than the longer way alone at its full rate, no later than at the rate that both together leave it.
+        CHECK(time >= more / 425 * (1 - 1e-12));
+        CHECK(time <= more / 300 * (1 + 1e-12));
+    }
+}
+
+}  // namespace raya

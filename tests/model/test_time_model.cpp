@@ -1,0 +1,113 @@
+// Modelled times against times worked out by hand, and against the paper's.
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "host/model/budget.hpp"
+#include "host/model/time_model.hpp"
+#include "host/scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+/// The busiest of `pes` PEs has `max` cycles, the others none.
+Load load_with(std::uint64_t max, std::size_t pes = 256) {
+    std::vector<std::uint64_t> per_pe(pes);
+    per_pe[pes / 2] = max;
+    return load_of(std::move(per_pe));
+}
+
+ModelledTime time_of(const std::vector<Load>& phases, const Communication& communication = {}, double factor = 1,
+                     const SmoothingCycles& smoothing = {}) {
+    const auto time = modelled_time(machine_named("spa"), phases, communication, factor, smoothing);
+    REQUIRE(time.has_value());
+    return *time;
+}
+
+Communication rotations(std::uint64_t count, std::uint64_t words_of_a_pe, std::uint64_t pes = 256) {
+    return {.rotations = count, .rotation_words = count * words_of_a_pe * pes};
+}
+
+}  // namespace
+
+// 768 words take 0.128 ms at 6 Mword/s, the synchronisation 0.1845 ms: 0.3125 ms together, 10 ms / 32.
+TEST_CASE("rotations of a column of 256 pixels take the paper's time", "[machine]") {
+    CHECK(time_of({load_with(0)}, rotations(1, 768)).communication_ms == Approx(0.3125).epsilon(1e-12));
+    CHECK(time_of({load_with(0)}, rotations(34, 768)).communication_ms == Approx(10.625).epsilon(1e-12));
+    CHECK(time_of({load_with(0)}, rotations(2, 768)).communication_ms == Approx(0.625).epsilon(1e-12));
+    CHECK(time_of({load_with(0)}, rotations(10, 0)).communication_ms == Approx(1.845).epsilon(1e-12));
+    // half as many PEs, twice the words of each
+    CHECK(time_of({load_with(0, 128)}, rotations(34, 1536, 128)).communication_ms ==
+          Approx(34 * (0.1845 + 0.256)).epsilon(1e-12));
+}
+
+// The bus carries one PE's words at a time: a transfer takes what a rotation of all PEs does.
+TEST_CASE("transfers and broadcasts of PEs come one after another", "[machine]") {
+    const auto ms = [](const Communication& c) { return time_of({load_with(0)}, c).communication_ms; };
+    CHECK(ms({.transfers = 1, .transfer_words = 768}) == Approx(0.3125).epsilon(1e-12));
+    CHECK(ms({.transfers = 1024, .transfer_words = 1024 * 768}) == Approx(320).epsilon(1e-12));
+    CHECK(ms({.pe_broadcasts = 256, .pe_broadcast_words = 256 * 768}) == Approx(80).epsilon(1e-12));
+    CHECK(ms({.rotations = 2, .rotation_words = 2 * 256 * 768, .transfers = 3, .transfer_words = 600}) ==
+          Approx(2 * 0.3125 + 3 * 0.1845 + 0.1).epsilon(1e-12));
+}
+
+TEST_CASE("the image of 256 x 256 takes 140 ms to the host, the objects a few words' time", "[machine]") {
+    const ModelledTime time =
+        time_of({load_with(0)}, {.broadcasts = 1, .broadcast_words = 1000, .gathers = 1, .gather_words = 196'608});
+    CHECK(time.image_ms == Approx(140).epsilon(1e-12));
+    CHECK(time.objects_ms == Approx(140 * 1000 / 196'608.0).epsilon(1e-12));
+    CHECK(time.communication_ms == 0);
+    CHECK(time.compute_ms == 0);
+}
+
+// 2,830,000 cycles of 100 ns are 283 ms.
+TEST_CASE("the machine waits for the busiest PE of each phase", "[machine]") {
+    CHECK(time_of({load_with(2'830'000)}).compute_ms == Approx(283).epsilon(1e-12));
+    const std::vector<Load> phases = {load_of({5'000, 30'000, 10'000}), load_of({40'000, 0, 20'000})};
+    CHECK(time_of(phases).compute_ms == Approx(7).epsilon(1e-12));  // 3 + 4, though no PE has more than 4.5
+    CHECK(time_of(phases, {}, 2.5).compute_ms == Approx(17.5).epsilon(1e-12));
+    CHECK(time_of(phases, {}, 2.5).factor == 2.5);
+}
+
+TEST_CASE("smoothing is a part of computing, named by itself", "[machine]") {
+    const SmoothingCycles smoothing = {.filter = filter_cycles(256), .compare = compare_cycles(256)};
+    const ModelledTime time = time_of({load_with(10'000)}, {}, 2, smoothing);
+    CHECK(time.filter_ms == Approx(2 * 256 * 42e-4).epsilon(1e-12));
+    CHECK(time.compare_ms == Approx(2 * 256 * 121e-4).epsilon(1e-12));
+    CHECK(time.compute_ms == Approx(2 + time.filter_ms + time.compare_ms).epsilon(1e-12));
+}
+
+TEST_CASE("the parts add up to the total, and the factor touches computing alone", "[machine]") {
+    constexpr std::uint64_t kSeed = 9;
+    SplitMix random(kSeed);
+    const auto below = [&](std::uint64_t limit) { return random.next() % limit; };
+    for (int i = 0; i < 500; ++i) {
+        CAPTURE(kSeed, i);
+        const Communication c = {1, below(100'000), below(100), 256 * below(100'000), 1, below(1'000'000)};
+        const std::vector<Load> phases(1 + below(3), load_with(below(100'000'000)));
+        const SmoothingCycles smoothing = {below(100'000), below(100'000)};
+        const double factor = random.uniform(0.5, 3);
+        const ModelledTime plain = time_of(phases, c, 1, smoothing), time = time_of(phases, c, factor, smoothing);
+        CHECK(time.total_ms == time.objects_ms + time.compute_ms + time.communication_ms + time.image_ms);
+        CHECK(time.compute_ms == Approx(factor * plain.compute_ms).epsilon(1e-12));
+        CHECK(time.total_ms - time.compute_ms == Approx(plain.total_ms - plain.compute_ms).epsilon(1e-9).margin(1e-9));
+    }
+}
+
+TEST_CASE("a machine whose rates nobody printed has no modelled time", "[machine]") {
+    const std::vector<Load> phases = {load_with(1)};
+    for (const Machine& machine : machines()) {
+        CAPTURE(machine.name);
+        const bool known = machine.name == "spa" || machine.name == "spa1" || machine.name == "grande";
+        CHECK(modelled_time(machine, phases, {}).has_value() == known);
+    }
+    using Rate = std::optional<double> Machine::*;
+    for (const Rate rate :
+         {&Machine::cycle_ns, &Machine::link_words_per_s, &Machine::rotation_sync_ms, &Machine::host_words_per_s}) {
+        Machine machine = machine_named("spa");
+        machine.*rate = {};
+        CHECK_FALSE(modelled_time(machine, phases, {}).has_value());
+    }
+}
+
+}  // namespace raya
