@@ -10,7 +10,7 @@
 // What a developer's devices were tuned to is no part of a test.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
-    raya::set_module_folder(RAYA_MODULES);
+    raya::set_own_file(RAYA_PROGRAM);
     const raya::KernelCache cache;
     return Catch::Session().run(argc, argv);
 }

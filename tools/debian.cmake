@@ -56,7 +56,7 @@ run(gzip -9n ${doc}/changelog)
 
 # The program's libraries are needed; those of pictures and MPI are loaded when they are asked for, and what asks says what is missing.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-matplotlib, openmpi-bin")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib, python3-jinja2, python3-tqdm, openmpi-bin")
 set(modules -dRecommends -e${staged}/usr/lib/raya/raya_pictures.so)
 if(EXISTS ${staged}/usr/lib/raya/raya_mpi.so)
     list(APPEND modules -dSuggests -e${staged}/usr/lib/raya/raya_mpi.so)

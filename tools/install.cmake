@@ -10,6 +10,23 @@ if(TARGET raya_mpi)
     install(TARGETS raya_mpi LIBRARY DESTINATION lib/raya)
 endif()
 
+
+# The Python module with the laboratory, for Debian's Python; `pip install .` puts both and the program into one package of a wheel.
+if(TARGET raya_python)
+    set(package lib/python3/dist-packages/raya)
+    if(SKBUILD)
+        set(package raya)
+        install(TARGETS raya RUNTIME DESTINATION ${package} COMPONENT wheel)
+    endif()
+    install(TARGETS raya_python LIBRARY DESTINATION ${package} COMPONENT wheel)
+    install(TARGETS raya_pictures LIBRARY DESTINATION ${package} COMPONENT wheel)
+    if(TARGET raya_mpi)
+        install(TARGETS raya_mpi LIBRARY DESTINATION ${package} COMPONENT wheel)
+    endif()
+    install(DIRECTORY host/python/raya/ DESTINATION ${package} COMPONENT wheel PATTERN __pycache__ EXCLUDE)
+    install(DIRECTORY tools/lab DESTINATION ${package} COMPONENT wheel PATTERN __pycache__ EXCLUDE)
+endif()
+
 install(DIRECTORY ${page_folder}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${completion_folder}/raya DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES ${completion_folder}/_raya DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)

@@ -17,9 +17,7 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kProgram = "/proc/self/exe";
-
-fs::path tests_folder;
+fs::path own_file;  // empty: the program
 
 std::string user_name(uid_t user) {
     const passwd* const entry = ::getpwuid(user);
@@ -63,11 +61,11 @@ bool is_within(const fs::path& path, const fs::path& folder) {
 /// Nobody else may change what lies at this path, so the loader gets the path, which debuggers and messages show.
 fs::path checked_module(const std::string& name) {
     std::error_code failure;
-    const fs::path program = fs::read_symlink(kProgram, failure).parent_path();
+    const fs::path self = own_file.empty() ? "/proc/self/exe" : own_file;
+    const fs::path program = (own_file.empty() ? fs::read_symlink(self, failure) : own_file).parent_path();
     struct stat is {};
-    if (failure || ::stat(kProgram, &is) != 0) throw ModuleError(fmt::format("cannot read {}", kProgram));
-    fs::path folder = program.filename() == "bin" ? program.parent_path() / "lib/raya" : program;
-    if (!tests_folder.empty()) folder = tests_folder;
+    if (failure || ::stat(self.c_str(), &is) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
+    const fs::path folder = program.filename() == "bin" ? program.parent_path() / "lib/raya" : program;
     const fs::path file = fs::weakly_canonical(folder, failure) / name;
     if (!fs::is_regular_file(fs::symlink_status(file, failure)))
         throw ModuleError(fmt::format("there is no file '{}'", file.string()));
@@ -101,7 +99,7 @@ std::string memory_limit() {
     if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
     return fmt::format("the limit of {} MB on memory (ulimit -v)", limit.rlim_cur >> 20);
 }
-void set_module_folder(const fs::path& folder) { tests_folder = folder; }
+void set_own_file(const fs::path& file) { own_file = file; }
 
 void* module_function(const std::string& name, const char* symbol) {
     const fs::path file = checked_module(name + ".so");

@@ -28,8 +28,8 @@ std::string memory_limit();
 /// this one and the program's owner may change the file or its folder, or a limit on memory is in the way.
 void* module_function(const std::string& name, const char* symbol);
 
-/// For test programs, which lie elsewhere than raya: the folder of their modules.
-void set_module_folder(const std::filesystem::path& folder);
+/// For what is no program of its own, the Python module, and for tests: the file from which modules are found.
+void set_own_file(const std::filesystem::path& file);
 
 /// Whether a folder that anybody may write passes if it is sticky: nobody may replace what others own there.
 enum class Sticky { kRefused, kAllowed };

@@ -12,7 +12,6 @@
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_options.hpp"
-#include "host/cli/bench_ranks.hpp"
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/bench_tables.hpp"
 #include "host/cli/bench_tune.hpp"
@@ -153,9 +152,6 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
     const BenchReport baseline = checked_files(command);
-    if (!command.ranks.empty())
-        return bench_on_ranks(parsed, command.render, scene_of(command),
-                              {command.ranks, command.samples, command.report});
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();

@@ -15,7 +15,6 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/ring/ring_work.hpp"
 #include "host/ring/schedule.hpp"
-#include "host/study/measured.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "host/version.hpp"
@@ -76,6 +75,18 @@ TorusSettings torus_of(const RingSettings& s) {
     t.sampling = s.sampling;
     t.kernels = s.kernels;
     return t;
+}
+
+// Mean seconds of one call, of as many as take 20 ms together: of shorter ones, clock and launch would count.
+double sample_seconds(const std::function<double()>& seconds) {
+    constexpr double kLeastSeconds = 0.02;
+    double sum = 0;
+    int calls = 0;
+    while (sum < kLeastSeconds) {
+        sum += seconds();
+        ++calls;
+    }
+    return sum / calls;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The commands of raya. Each file of this folder adds one to the parser and runs it; nothing else knows them.
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -31,7 +32,8 @@ void add_explore_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
-void add_study_command(CLI::App& program);
+/// `run` takes the settings as JSON; default: this process becomes the Python that runs the laboratory (tools/lab).
+void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run = {});
 void add_page_command(CLI::App& program);
 void add_verify_command(CLI::App& program);
 void add_ping_command(CLI::App& program, Ranks& ranks);

@@ -1,171 +1,191 @@
-// raya study NAME: measurements over many renders, written as tables. Each study adds its own command here.
+// raya study STUDY [SCENE...] -o DIR: hands over to the laboratory (tools/lab), which is Python.
 #include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <system_error>
 
 #include "host/base/json.hpp"
-#include "host/base/progress.hpp"
-#include "host/base/say.hpp"
-#include "host/base/standard_streams.hpp"
+#include "host/base/module.hpp"
 #include "host/base/verbosity.hpp"
-#include "host/base/whole_file.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/help_formatter.hpp"
+#include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/studies.hpp"
 #include "host/cli/tuned_option.hpp"
+#include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/report/table.hpp"
-#include "host/study/formats_report.hpp"
-#include "host/study/formats_study.hpp"
 
 namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct FormatsCommand {
-    std::string folder, size = "256", device;
-    std::vector<std::string> scenes, formats;
-    std::optional<std::uint32_t> lanes;
-    std::uint32_t samples = 5;
+struct StudyCommand {
+    std::string study, folder, device;
+    std::optional<std::uint32_t> size;
+    std::vector<std::string> scenes;
+    std::vector<double> network;  // alpha in microseconds, beta in nanoseconds a byte
     bool strict = false, no_tuned = false;
 };
 
-// Each format once, in the order given; fp32 is always there.
-std::vector<NumberFormat> formats_of(const FormatsCommand& command) {
-    if (command.formats.empty()) return reduced_formats();
-    std::vector<NumberFormat> formats;
-    for (const std::string& name : command.formats) {
-        const NumberFormat format = parse_format(name);
-        const bool known = format.is_fp32() || std::find(formats.begin(), formats.end(), format) != formats.end();
-        if (!known) formats.push_back(format);
+// Of tools/lab/studies.txt: [name, summary].
+std::vector<std::array<std::string, 2>> listed_studies() {
+    std::istringstream lines(embedded_files().at("tools/lab/studies.txt"));
+    std::vector<std::array<std::string, 2>> all;
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t colon = line.find(": ");
+        all.push_back({line.substr(0, colon), line.substr(colon + 2)});
     }
-    return formats;
+    return all;
 }
 
-FormatsSettings formats_settings(const FormatsCommand& command) {
-    if (command.samples < 1 || command.samples > 1000)
-        throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
-    if (command.lanes == 0u) throw UserError("--lanes 0: must be 1, 4, 8 or 16");
-    const ImageSize size = parse_image_size(command.size);
-    FormatsSettings settings;
-    settings.width = size.width;
-    settings.height = size.height;
-    settings.lanes = command.lanes.value_or(0);
-    settings.samples = command.samples;
-    settings.formats = formats_of(command);
+std::vector<std::string> study_names() {
+    std::vector<std::string> names;
+    for (const auto& [name, summary] : listed_studies()) names.push_back(name);
+    names.emplace_back("all");
+    return names;
+}
+
+// As the help of a command ends.
+std::string studies_text() {
+    std::string text = "Studies:\n";
+    for (const auto& [name, summary] : listed_studies()) text += fmt::format("  {}   {}\n", name, summary);
+    return text + '\n';
+}
+
+void check_study(const StudyCommand& command) {
+    const std::vector<std::string> names = study_names();
+    const auto is_study = [&](const std::string& word) { return std::ranges::find(names, word) != names.end(); };
+    if (!is_study(command.study) && !command.study.ends_with(".py"))
+        throw UserError(fmt::format("no study {}{}; there are {}, or a file FILE.py with a study of yours",
+                                    command.study, did_you_mean(command.study, names), fmt::join(names, ", ")));
+    std::error_code error;
+    if (!is_study(command.study) && !fs::is_regular_file(command.study, error))
+        throw UserError(fmt::format("{}: there is no such file", command.study));
+    for (const std::string& scene : command.scenes)
+        if (is_study(scene) && !fs::exists(scene, error))
+            throw UserError(fmt::format(
+                "{} is a study, not a scene: studies run one at a time, all of them with raya study all", scene));
+    constexpr std::uint32_t kSmallest = 17, kLargest = 4096;  // the paper's offset 16 must be one of the image's
+    if (command.size && (*command.size < kSmallest || *command.size > kLargest))
+        throw UserError(fmt::format("--size {}: must be {}..{} pixels a side", *command.size, kSmallest, kLargest));
+    const std::vector<double>& n = command.network;
+    const auto is_time = [](double time) { return time >= 0 && time <= 1e9; };
+    if (!n.empty() && (n.size() != 2 || !std::ranges::all_of(n, is_time)))
+        throw UserError(
+            fmt::format("--network {}: must be two numbers, 0..10^9: microseconds a message, nanoseconds a byte",
+                        fmt::join(n, ",")));
+    if (command.folder == "-") throw UserError("-o -: a study is many files, which stdout cannot hold; name a folder");
+}
+
+// What tools/lab/__main__.py reads.
+Json settings_of(const StudyCommand& command) {
+    Json settings = {{"study", command.study},   {"scenes", command.scenes},     {"output", command.folder},
+                     {"size", nullptr},          {"network", nullptr},           {"device", command.device},
+                     {"strict", command.strict}, {"no_tuned", command.no_tuned}, {"verbosity", verbosity()}};
+    if (command.size) settings["size"] = *command.size;
+    if (!command.network.empty()) settings["network"] = command.network;
     return settings;
 }
 
-std::vector<LabelledScene> scenes_of(const FormatsCommand& command) {
-    if (command.scenes.empty()) return embedded_study_scenes();
-    std::vector<LabelledScene> scenes;
-    for (const std::string& file : command.scenes) scenes.push_back({file, read_scene(file, command.strict).scene});
-    return scenes;
-}
-
-FormatsStudy run_with_progress(Session& session, const std::vector<LabelledScene>& scenes,
-                               const FormatsSettings& settings) {
-    ProgressBar bar(true, "study formats");
-    return run_formats_study(session, scenes, settings,
-                             bar.active() ? [&](double done) { bar.update(done); } : ProgressCallback{});
-}
-
-void study_formats(const FormatsCommand& command) {
-    const FormatsSettings settings = formats_settings(command);
-    const std::vector<LabelledScene> scenes = scenes_of(command);
-    const fs::path folder = command.folder;
-    const TunedUse tuned = use_tuned(command.no_tuned);
-    Session session(choose_device(command.device));  // before the folder: a device that there is not leaves none behind
-    const StudyFolder made(folder, {"formats.csv", "formats.json", "formats.md"});
-    const FormatsStudy study = run_with_progress(session, scenes, settings);
-    write_whole_file(folder / "formats.csv", formats_csv(study));
-    write_whole_file(folder / "formats.json", formats_json(study).dump(2) + "\n");
-    write_whole_file(folder / "formats.md", formats_markdown(study));
-    if (!is_quiet()) fmt::print("{}", printable(text_table(formats_overview_cells(study))));
-}
-
-void add_timing_options(CLI::App& command, FormatsCommand& options) {
-    const OptionGroup group(command, "What is measured");
-    add_value(command, "--samples", options.samples,
-              "Timed renders of each scene and format, 1..1000; the least time counts")
-        ->type_name("N")
-        ->capture_default_str();
-    add_value(command, "--lanes", options.lanes,
-              "Rays that a work-item traces at once: 1, 4, 8 or 16; default: the device's")
-        ->type_name("V");
-    add_device_option(command, options.device);
-}
-
-void add_formats_study(CLI::App& study) {
-    CLI::App* command = study.add_subcommand(
-        "formats",
-        "PSNR, errors and time of fp32 and the reduced number formats against the double-precision reference");
-    add_study_examples(*command);
-    const auto options = std::make_shared<FormatsCommand>();
-    OptionGroup group(*command, kFiles);
-    add_file(*command, FileUse::kWrittenFolder, "-o,--output", options->folder, "DIR",
-             "Folder for formats.csv, formats.json and formats.md; made if missing")
+void describe_study(CLI::App& command, StudyCommand& options) {
+    OptionGroup group(command, kFiles);
+    offer_words(add_value(command, "STUDY", options.study, "Its name (below), all, or a file with a study of yours")
+                    ->type_name("STUDY|all|FILE.py")
+                    ->required(),
+                study_names());
+    add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
+             "Scenes in NFF, one of them - for stdin; of `all`, studies of one scene take the first; default: the "
+             "study's own");
+    add_file(command, FileUse::kWrittenFolder, "-o,--output", options.folder, "DIR",
+             "Folder for index.html, to be read, and Markdown, CSV, JSON and plots; made if missing")
         ->required();
-    add_file(*command, FileUse::kRead, "SCENE", options->scenes, "SCENE.nff",
-             "Scenes in NFF, one of them - for stdin; default: the project's centre, spheres, glass, polygons, cones");
-    group.next("What is measured");
-    add_value(*command, "--format", options->formats,
-              "Formats beside fp32, with commas between: spa22 (e6m15) or eXmY[t]: X = 5..8, Y = 4..21, t "
-              "truncates; default: e8m21, e8m18, e8m15, e7m15, e6m15, e6m14, e6m13, without and with t")
+    group.next(kPicture);
+    add_value(command, "--size", options.size,
+              "Image size in pixels a side, 17..4096; default: the study's, mostly 256")
+        ->type_name("N");
+    group.next(kMachine);
+    add_value(command, "--network", options.network,
+              "Of study ranks: a network of yours, as well as the study's: what a message takes in microseconds, and a "
+              "byte in nanoseconds; such as 30,0.8")
         ->delimiter(',')
         ->allow_extra_args(false)  // what follows is a scene
-        ->type_name("NAME,...");
-    group.next(kPicture);
-    add_value(*command, "--size", options->size, "Image size in pixels, 1..16384 a side")
-        ->type_name("N|WxH")
-        ->capture_default_str();
-    add_strict_option(*command, options->strict);
-    add_timing_options(*command, *options);
-    add_tuned_option(*command, options->no_tuned);
-    command->callback([options] { study_formats(*options); });
+        ->type_name("ALPHA,BETA");
+    add_strict_option(command, options.strict);
+    add_device_option(command, options.device);
+    add_tuned_option(command, options.no_tuned);
+}
+
+// The folder that Python finds the module in: of a build, or of an installation below a prefix.
+fs::path package_folder(const fs::path& program) {
+    std::error_code error;
+    for (const fs::path& folder :
+         {program.parent_path() / "python", program.parent_path().parent_path() / "lib/python3/dist-packages"})
+        if (fs::is_directory(folder / "raya/lab", error)) return fs::canonical(folder);
+    return {};
+}
+
+// Nobody else may change what Python is about to run.
+void check_folder(const fs::path& folder) {
+    struct stat is {};
+    ::stat(folder.c_str(), &is);
+    const std::string why = other_writers(folder / "raya", {::geteuid(), is.st_uid}, Sticky::kRefused);
+    if (!why.empty()) throw UserError(fmt::format("refused to run '{}': {}; remedy: chmod go-w", folder.string(), why));
+}
+
+[[noreturn]] void start_laboratory(const std::string& settings) {
+    const char* const other = std::getenv("RAYA_PYTHON");
+    const std::string python = other != nullptr && *other != '\0' ? other : "/usr/bin/python3";
+    const fs::path program = fs::read_symlink("/proc/self/exe"), folder = package_folder(program);
+    if (folder.empty() && other == nullptr)
+        throw UserError(
+            "study needs the Python module raya, without which this program was built; remedy: tools/setup, then build "
+            "again, or name a Python that has it in RAYA_PYTHON");
+    if (!folder.empty()) {
+        check_folder(folder);
+        const char* const path = std::getenv("PYTHONPATH");
+        const std::string more = path != nullptr && *path != '\0' ? fmt::format(":{}", path) : "";
+        ::setenv("PYTHONPATH", (folder.string() + more).c_str(), 1);
+    }
+    ::setenv("PYTHONSAFEPATH", "1", 1);  // no module of the folder that it is called in
+    ::setenv("RAYA_PROGRAM", program.c_str(), 1);
+    ::execlp(python.c_str(), python.c_str(), "-m", "raya.lab", "--settings", settings.c_str(), nullptr);
+    throw UserError(
+        fmt::format("study needs Python: cannot start {}: {}; remedy: sudo apt-get install python3, or "
+                    "name another Python in RAYA_PYTHON",
+                    python, std::generic_category().message(errno)));
 }
 
 }  // namespace
 
-void add_study_examples(CLI::App& command) {
-    const std::string& name = command.get_name();
-    add_examples(command,
-                 {{fmt::format("raya study {0} -o {0}", name), "On the study's own scenes, into a folder of its own"},
-                  {fmt::format("raya study {0} scenes/mirrors.nff --size 64 -o small-{0}", name),
-                   "On another scene, in a small size, to see what it is about"}});
-}
-
-StudyFolder::StudyFolder(const fs::path& folder, const std::vector<std::string>& files) {
-    if (is_standard_stream(folder))
-        throw UserError("-o -: a study is many files, which stdout cannot hold; name a folder");
-    std::error_code error;
-    for (fs::path missing = folder; !missing.empty() && !fs::exists(missing, error); missing = missing.parent_path())
-        made_.push_back(missing);
-    fs::create_directories(folder, error);
-    if (error) throw UserError(fmt::format("-o {}: cannot create directory: {}", folder.string(), error.message()));
-    for (const std::string& file : files) check_writable(folder / file);
-}
-
-StudyFolder::~StudyFolder() {
-    std::error_code error;  // of a folder that has something in it
-    for (const fs::path& folder : made_) fs::remove(folder, error);
-}
-
-void add_study_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("study", "Measure over many renders and write tables");
-    add_examples(*command, {{"raya study fig7 -o fig7", "One study; open fig7/index.html in a browser"},
-                            {"raya study all -o studies", "Every study, and one document of them all"}});
-    command->require_subcommand(1);
-    add_laboratory_studies(*command);
-    add_formats_study(*command);
+void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run) {
+    CLI::App* command = program.add_subcommand("study", "Measure over many renders, and test what the papers claim");
+    add_examples(*command,
+                 {{"raya study fig7 -o fig7", "One study; open fig7/index.html in a browser"},
+                  {"raya study fig8 scenes/mirrors.nff --size 64 -o mirrors", "Of another scene, in a small size"},
+                  {"raya study all -o studies", "Every study, and one document of them all"}});
+    command->footer(studies_text() + command->get_footer());
+    const auto options = std::make_shared<StudyCommand>();
+    describe_study(*command, *options);
+    command->callback([options, run] {
+        check_study(*options);
+        const std::string settings = settings_of(*options).dump();
+        run ? run(settings) : start_laboratory(settings);
+    });
 }
 
 }  // namespace raya

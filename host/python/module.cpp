@@ -15,17 +15,17 @@
 namespace {
 
 // What raya loads late lies beside this module, not beside the interpreter.
-std::filesystem::path own_folder() {
+std::filesystem::path own_file() {
     Dl_info info{};
-    ::dladdr(reinterpret_cast<void*>(&own_folder), &info);
-    return std::filesystem::canonical(info.dli_fname).parent_path();
+    ::dladdr(reinterpret_cast<void*>(&own_file), &info);
+    return std::filesystem::canonical(info.dli_fname);
 }
 
 }  // namespace
 
 PYBIND11_MODULE(_engine, module) {
     using namespace raya;
-    set_module_folder(own_folder());
+    set_own_file(own_file());
     set_verbosity(kSilent);  // warnings are Python's
     auto& refused = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
     refused.doc() = "What was asked for cannot be done.";
@@ -40,4 +40,5 @@ PYBIND11_MODULE(_engine, module) {
     add_scenes(module);
     add_renders(module);
     add_loads(module);
+    add_study_settings(module);
 }

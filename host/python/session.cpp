@@ -5,13 +5,18 @@
 #include <pybind11/stl.h>
 
 #include <csignal>
+#include <cstdio>
 #include <utility>
 
+#include "host/base/verbosity.hpp"
 #include "host/cl/device.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
+#include "host/cli/help_formatter.hpp"
 #include "host/cli/parse_failure.hpp"
+#include "host/cli/verbosity_options.hpp"
 #include "host/error.hpp"
+#include "host/ranks/ranks.hpp"
 
 namespace raya {
 namespace {
@@ -87,11 +92,45 @@ PixelSubset pixels_of(py::dict& options) {
     return {stride, first};
 }
 
+// JSON for raya.lab. Help is printed, and ends Python as it ends raya.
+std::string study_settings(const std::vector<std::string>& arguments) {
+    CLI::App program("", "raya");
+    program.formatter(std::make_shared<HelpFormatter>());
+    std::string settings;
+    add_study_command(program, [&settings](const std::string& json) { settings = json; });
+    program.parse_complete_callback([&program] { check_files(*program.get_subcommands().front()); });
+    add_verbosity_options(program, Ranks::alone());
+    set_verbosity(kUsual);
+    std::vector<std::string> words = {"study"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    int code = 0;
+    try {
+        parse_words(program, words);
+    } catch (const CLI::ParseError& error) {
+        code = program.exit(error);
+    } catch (const UserError&) {
+        set_verbosity(kSilent);
+        throw;
+    }
+    set_verbosity(kSilent);
+    if (settings.empty()) {
+        std::fflush(stdout);
+        PyErr_SetObject(PyExc_SystemExit, py::int_(code).ptr());
+        throw py::error_already_set();
+    }
+    return settings;
+}
+
 }  // namespace
 
 PythonSession::PythonSession(const std::string& device)
     : device_(choose_device_with_stacks(device)), session_(device_) {
     session_.keep_programs();
+}
+
+void add_study_settings(py::module_& module) {
+    module.def("study_settings", study_settings, py::arg("arguments"),
+               "What `raya study` was asked for in these words, as JSON; prints help where they ask for it.");
 }
 
 PythonSession& PythonSession::shared(const std::string& device) {

@@ -38,5 +38,6 @@ class PythonSession {
 void add_scenes(py::module_& module);
 void add_renders(py::module_& module);
 void add_loads(py::module_& module);
+void add_study_settings(py::module_& module);
 
 }  // namespace raya

@@ -133,8 +133,7 @@ TEST_CASE("mpirun: rank 0 alone says what it does", "[ranks][.mpirun][verbosity]
 TEST_CASE("mpirun: what ranks send arrives, of any size, and from all to all", "[ranks][.mpirun]") {
     for (const Mpi& mpi : mpis_here())
         for (const std::uint32_t count : {2u, 3u, 7u}) {
-            const std::string modules = std::filesystem::path(mpi.program).parent_path();
-            const RanksOutcome run = run_ranks(mpi, {"-n", std::to_string(count), RAYA_TRANSPORT_CHECK, modules});
+            const RanksOutcome run = run_ranks(mpi, {"-n", std::to_string(count), RAYA_TRANSPORT_CHECK, mpi.program});
             INFO(run.told());
             CHECK(run.code == 0);
             CHECK_THAT(run.out,

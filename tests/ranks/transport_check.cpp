@@ -101,10 +101,10 @@ int check_all(Ranks& ranks) {
 }  // namespace
 }  // namespace raya
 
-// transport_check FOLDER: where the module for MPI lies.
+// transport_check PROGRAM: raya, from which the module for MPI is found.
 int main(int argc, char** argv) {
     constexpr double kPatience = 60;  // seconds
-    if (argc > 1) raya::set_module_folder(argv[1]);
+    if (argc > 1) raya::set_own_file(argv[1]);
     auto* const open = reinterpret_cast<raya::OpenMpi*>(raya::module_function(raya::kMpiModule, raya::kOpenMpi));
     raya::Ranks ranks{std::unique_ptr<raya::Transport>(open(kPatience))};
     return raya::check_all(ranks);

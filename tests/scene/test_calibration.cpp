@@ -5,7 +5,7 @@
 
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
-#include "host/study/scenes.hpp"
+#include "host/scene/nff_reader.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/paths.h"
 
@@ -23,7 +23,7 @@ RingResult render_on_spa(Session& session, const Scene& scene, std::uint32_t p) 
 
 TEST_CASE("the centre scene has the imbalance on which it was calibrated", "[calibration]") {
     Session session(choose_device(""));
-    const Scene scene = embedded_scene("centre").scene;
+    const Scene scene = parse_nff(file_contents(RAYA_SOURCE_DIR "/scenes/centre.nff"), "centre");
     const Load columns = render_on_spa(session, scene, 0).all.load, cyclic = render_on_spa(session, scene, 16).all.load;
     CHECK(columns.per_pe.size() == 256);
     CHECK(columns.mean == cyclic.mean);

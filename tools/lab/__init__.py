@@ -3,6 +3,18 @@
 A study is one file: its docstring says what is asked and how, `run(lab, scenes)` renders and returns a Page. See
 docs/my_study.py for one of 30 lines, tools/lab/studies for all others.
 """
+import sys
+from importlib.util import find_spec
+
+_MISSING = [name for name in ("numpy", "scipy", "pandas", "matplotlib", "jinja2", "tqdm") if find_spec(name) is None]
+if _MISSING:
+    _TEXT = (f"study needs the Python packages {', '.join(_MISSING)}, which {sys.executable} does not have; remedy: sudo "
+             f"apt-get install {' '.join('python3-' + name for name in _MISSING)}, or name another Python in RAYA_PYTHON")
+    if sys.argv[0] != "-m":
+        raise ImportError(_TEXT)
+    print(f"raya: {_TEXT}", file=sys.stderr)  # python3 -m raya.lab comes by here first
+    sys.exit(2)
+
 from raya.lab import papers
 from raya.lab.laboratory import (Costs, Ensemble, Laboratory, balance_pass, measured, one_of, sampled, settings_of_pass,
                                  study_scenes)

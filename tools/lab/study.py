@@ -12,27 +12,23 @@ REGISTRY = {}
 @dataclass(frozen=True)
 class Study:
     name: str
-    summary: str
     run: Callable  # (laboratory, scenes) -> Page; `scenes` are those that the user named, or none
     prose: str  # title, question, method: a line, a paragraph, a list
     one_scene: bool = False
     lacks: Callable = lambda: ""  # what it needs and this machine does not have, with the remedy
-    in_all: bool = True
 
 
-def study(name, summary, *, prose=None, **more):
-    """Declares a study; its prose is the docstring of its module unless given."""
+def study(name, *, prose=None, **more):
+    """Declares a study, of which studies.txt has a line; its prose is the docstring of its module unless given."""
     def declare(run):
         text = prose or importlib.import_module(run.__module__).__doc__
-        REGISTRY[name] = Study(name, summary, run, text, **more)
+        REGISTRY[name] = Study(name, run, text, **more)
         return run
     return declare
 
 
-# In the order in which they tell the story.
-ORDER = ["fig7", "fig8", "fig9", "table2", "table3", "table4", "bus", "cluster", "fig12", "fig13", "images", "lattice",
-         "scale", "static-vs-dynamic", "best-offset", "turn", "formats", "divisions", "havran", "accel", "objects",
-         "nodes", "inject", "hybrid", "simgrid", "ranks"]
+# Their names, in the order in which they tell the story.
+ORDER = [line.partition(":")[0] for line in (Path(__file__).parent / "studies.txt").read_text().splitlines()]
 
 
 def studies():
@@ -53,4 +49,4 @@ def study_of_file(path):
     if not callable(getattr(module, "run", None)) or not module.__doc__:
         raise ValueError(f"{path}: is not a study: it needs a docstring (title, question, method) and run(lab, scenes)")
     name = path.stem.replace("_", "-")
-    return Study(name, module.__doc__.splitlines()[0], module.run, module.__doc__)
+    return Study(name, module.run, module.__doc__)

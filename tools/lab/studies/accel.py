@@ -168,7 +168,7 @@ def ratios_text(some):
     return ", ".join(f"{text_of(one['times'])} ({one['group']})" for one in some)
 
 
-@study("accel", "Time, tests and memory of none, grid and bvh, 10 to 600,000 objects, beside Embree")
+@study("accel")
 def accel(lab, scenes):
     size = lab.size(256)
     some = [(NAMED, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()

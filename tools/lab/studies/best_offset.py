@@ -64,7 +64,7 @@ def choices_of(lab, scene):
     return [Choice(scene, size, pes, method, ensemble) for pes in numbers for method in METHODS]
 
 
-@study("best-offset", "The best offset for your scene, communication in the balance")
+@study("best-offset")
 def best_offset(lab, scenes):
     some = scenes or [raya.example("centre")]
     by_scene = [choices_of(lab, scene) for scene in some]

@@ -70,8 +70,7 @@ def plot_of(rows):
                 "exchange (modelled ms)", [Series(label, rows["P"], rows[c]) for label, c in columns.items()], "xy")
 
 
-@study("bus", "What neighbours cost over the ring, over the bus and by broadcasts of PEs, 4 to 256 PEs",
-       one_scene=True)
+@study("bus", one_scene=True)
 def bus(lab, scenes):
     scene = one_of(scenes)
     size = lab.size(256)

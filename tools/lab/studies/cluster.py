@@ -48,7 +48,7 @@ def row_of(lab, scene, size):
             "supersampling alone, p = 16 (ms)": alone[16 % size]}
 
 
-@study("cluster", "Scenes as heavy as the paper's: its times on one clock, nothing fitted")
+@study("cluster")
 def cluster(lab, scenes):
     size, own = lab.size(256), not scenes
     family = scenes or [raya.generate.cluster(seed).renamed(f"cluster, seed {seed}") for seed in range(1, VIEWS + 1)]

@@ -29,7 +29,7 @@ def even_scenes():
     return [raya.generate.uniform(1 << k, near_cube(1 << k)).renamed(f"{1 << k} objects") for k in (6, 8, 9, 10)]
 
 
-@study("divisions", "Time of one machine against the number of voxels, 64 to 1024 even spheres")
+@study("divisions")
 def divisions(lab, scenes):
     size, from_paper = lab.size(96), not scenes
     runs, settings = [], []

@@ -55,7 +55,7 @@ def rows_of(lab, scene, size):
     return rows, result.report["device"]["lanes"]
 
 
-@study("formats", "PSNR, errors and time of fp32 and the reduced number formats against the double-precision reference")
+@study("formats")
 def formats(lab, scenes):
     size = lab.size(256)
     by_scene, lanes = zip(*(rows_of(lab, scene, size) for scene in scenes or study_scenes()))

@@ -25,7 +25,7 @@ def grids_for(name):
     return known or [(20, 20, 20), (44, 44, 44)]
 
 
-@study("havran", "Intersection tests and steps a ray in uniform grids, balls and lattice")
+@study("havran")
 def havran(lab, scenes):
     size = lab.size(257)  # every other corner of SPD's 513
     own = [raya.generate.balls(4).renamed("balls"), raya.generate.lattice(12).renamed("lattice")]

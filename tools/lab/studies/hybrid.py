@@ -51,7 +51,7 @@ def rows_of(lab, scene, size, sides):
     return rows
 
 
-@study("hybrid", "Torus: groups of nodes share the screen, each divides space")
+@study("hybrid")
 def hybrid(lab, scenes):
     size = lab.size(72)  # 64 + 8: on 64 groups each row is shifted by the root of their number, the best offset
     some = scenes or [even_scene(8320), raya.example("centre"), balls_scene(3)]

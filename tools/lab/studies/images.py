@@ -35,7 +35,7 @@ def rows_of(pictures, objects, pes, offset):
                           f"efficiency, p = {offset}"], axis=1)
 
 
-@study("images", "Efficiency of column split and cyclic mapping over ten scenes, two sizes")
+@study("images")
 def images(lab, scenes):
     pes = lab.size(256)
     p = round(pes**0.5)

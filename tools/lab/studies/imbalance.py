@@ -136,11 +136,11 @@ def plots_of(name, scene, phase, rows, near, views, in_paper):
                   Series(f"{scene}, one picture", rows["p"], rows["u"])] + paper, log="y")]
 
 
-@study("fig8", "Imbalance against the offset p", prose=PROSE_8, one_scene=True)
+@study("fig8", prose=PROSE_8, one_scene=True)
 def fig8(lab, scenes):
     return page_of("fig8", lab, scenes, first=True)
 
 
-@study("fig13", "Imbalance against the offset p in supersampling", prose=PROSE_13, one_scene=True)
+@study("fig13", prose=PROSE_13, one_scene=True)
 def fig13(lab, scenes):
     return page_of("fig13", lab, scenes, first=False)

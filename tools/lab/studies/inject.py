@@ -18,7 +18,7 @@ from raya.lab.torus import BOUNCES, CLOCK, even_scene, near_cube, run_on_torus
 MOST, PART = 512, 1.1  # PART: times as long; more than this and the two ways have parted
 
 
-@study("inject", "Torus: the root makes all primary rays, or all nodes do", one_scene=True)
+@study("inject", one_scene=True)
 def inject(lab, scenes):
     scene = scenes[0] if scenes else even_scene(8320)
     size, rows, nodes = lab.size(64), [], 1

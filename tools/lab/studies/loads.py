@@ -94,11 +94,11 @@ def page_of(name, lab, scenes, first):
                        "pass?"})
 
 
-@study("fig7", "Load of each PE, column split and cyclic mapping", prose=PROSE, one_scene=True)
+@study("fig7", prose=PROSE, one_scene=True)
 def fig7(lab, scenes):
     return page_of("fig7", lab, scenes, first=True)
 
 
-@study("fig12", "Load of each PE in supersampling", prose=PROSE, one_scene=True)
+@study("fig12", prose=PROSE, one_scene=True)
 def fig12(lab, scenes):
     return page_of("fig12", lab, scenes, first=False)

@@ -49,7 +49,7 @@ def series_of(lab, scene, size, fixed, links, known):
     return pd.DataFrame(rows)
 
 
-@study("nodes", "Torus: 1 to 4096 nodes, speed-up, balance, hops, 2-D against 3-D")
+@study("nodes")
 def nodes(lab, scenes):
     size = lab.size(64)
     some = scenes or [even_scene(8320), balls_scene(3)]

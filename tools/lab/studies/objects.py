@@ -71,7 +71,7 @@ def depth_of(lab, scene, size):
             run.events["steps"] / walks)
 
 
-@study("objects", "Torus: time against the number of objects, even and random", one_scene=True)
+@study("objects", one_scene=True)
 def objects(lab, scenes):
     size, runs, depths, words = lab.size(96), {}, [], []
     for count in COUNTS:

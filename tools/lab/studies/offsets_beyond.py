@@ -25,7 +25,7 @@ OTHERS = 16  # views of each scene but the first, whose views Fig. 8 has too
 CORRELATED = -0.5
 
 
-@study("lattice", "Are offsets beyond the square root of P worse?")
+@study("lattice")
 def lattice(lab, scenes):
     size = lab.size(256)
     some = scenes or [s for s in paper_like_scenes()

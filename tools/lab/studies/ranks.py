@@ -227,8 +227,7 @@ def processor_time():
     return sum(ticks) - ticks[3] - ticks[4], sum(ticks), own
 
 
-@study("ranks", "1 to 65,536 MPI ranks, ring and torus: where communication takes half, beside what is measured here",
-       one_scene=True, lacks=lacks)
+@study("ranks", one_scene=True, lacks=lacks)
 def ranks(lab, scenes):
     on_ring, on_torus = one_of(scenes), scenes[0] if scenes else even_scene(8320)
     size = lab.size(512)

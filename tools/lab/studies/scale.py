@@ -46,7 +46,7 @@ def efficiencies(image):
     return pd.DataFrame(rows)
 
 
-@study("scale", "16 to 1,048,576 PEs, up to one for each pixel", one_scene=True)
+@study("scale", one_scene=True)
 def scale(lab, scenes):
     scene = one_of(scenes)
     side = lab.size(1024)

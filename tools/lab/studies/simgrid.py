@@ -74,7 +74,7 @@ def rows_of(lab, scene, size, links, inject):
     return rows
 
 
-@study("simgrid", "Torus without supersteps: raya's simulator beside SimGrid", one_scene=True, lacks=lacks)
+@study("simgrid", one_scene=True, lacks=lacks)
 def simgrid(lab, scenes):
     scene = scenes[0] if scenes else even_scene(512)
     size = lab.size(48)

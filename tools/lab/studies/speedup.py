@@ -45,8 +45,7 @@ def all_of(image):
     return rows, {a: grid(image, a) for a in range(1, int(len(pes)**0.5) + 1)}
 
 
-@study("fig9", "Speed-up against the number of PEs, both folds, and the mappings of CAP and Pixel Machine",
-       one_scene=True)
+@study("fig9", one_scene=True)
 def fig9(lab, scenes):
     scene = one_of(scenes)
     size = lab.size(256)

@@ -93,7 +93,7 @@ def counts_of(scenes):
                                              fixed["makespan (cycles)"].values).sum()}
 
 
-@study(NAME, "Static mappings against dynamic and hybrid distribution")
+@study(NAME)
 def static_vs_dynamic(lab, scenes):
     size = lab.size(512)
     own = [raya.example("centre"), raya.generate.random(200, 200).renamed("random-200"),

@@ -47,7 +47,7 @@ def device_seconds(lab, scene, size, form):
     return measured(lambda: lab.render(scene, **options).device_s, 5, ENOUGH_S)
 
 
-@study("table2", "Times of the SPA with 256 PEs and with one, and of this machine", one_scene=True)
+@study("table2", one_scene=True)
 def table2(lab, scenes):
     scene = one_of(scenes)
     size = lab.size(256)

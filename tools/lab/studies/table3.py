@@ -28,7 +28,7 @@ def at_factor(runs, factor):
             "best of 0..16": int(near["offset"][near["total_ms"].idxmin()])}
 
 
-@study("table3", "What the 3 x 3 filter costs", one_scene=True)
+@study("table3", one_scene=True)
 def table3(lab, scenes):
     runs = smoothing_runs(lab, scenes, "filter")
     rows, times, near = runs.rows(), runs.times(), runs.near()

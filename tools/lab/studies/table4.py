@@ -20,7 +20,7 @@ from raya.lab.spa import CLOCK, FACTOR, run_on_spa, smoothing_runs
 PRINTED_RATIO = papers.SUPERSAMPLE_0_MS / papers.SUPERSAMPLE_16_MS  # [D]
 
 
-@study("table4", "What supersampling costs, in both readings of the paper", one_scene=True)
+@study("table4", one_scene=True)
 def table4(lab, scenes):
     runs = smoothing_runs(lab, scenes, "supersample")
     rows, times = runs.rows(), runs.times()

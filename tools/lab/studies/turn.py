@@ -38,7 +38,7 @@ def choices_of(u, root):
             "u, each frame's best p": even.min(1).mean()}
 
 
-@study("turn", "Balance over a turn of the camera: u of every frame, and whether one offset holds")
+@study("turn")
 def turn(lab, scenes):
     size = lab.size(256)
     root = round(size**0.5) % size
