@@ -241,7 +241,7 @@ def ranks(lab, scenes):
                     zip((Ring, Torus), (on_ring, on_torus), files)]
         trials = [measure(machine, here, lab.session.device["name"]) for machine in machines]
         busy, whole, own = (b - a for a, b in zip(before, processor_time()))
-    own_network = ping["network"]["alpha_s"], ping["network"]["beta_s"]
+    own_network = ping["alpha_s"], ping["beta_s_per_byte"]
     networks = {"this host": (own_network, f"fitted to the ping-pong, {ping['library']}"),
                 "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes"),
                 "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and what MPI "
@@ -327,13 +327,13 @@ def finding_of_others(share):
 
 def finding_of_network(ping):
     first, last = ping["messages"][0], ping["messages"][-1]
-    return (f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['network']['alpha_s']:.2f} us and "
-            f"{1e9 * ping['network']['beta_s']:.3f} ns a byte by the fit; one byte took {1e6 * first['seconds']:.2f} us, and 4 "
+    return (f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
+            f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte by the fit; one byte took {1e6 * first['seconds']:.2f} us, and 4 "
             f"MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s.")
 
 
 def tables_of(rows, checks, summary, networks, ping):
-    alpha, beta = ping["network"]["alpha_s"], ping["network"]["beta_s"]
+    alpha, beta = ping["alpha_s"], ping["beta_s_per_byte"]
     return [Table("ranks", "Where communication takes half, and the fewest seconds", summary),
             Table("ranks-here", "Predicted and measured on one core a rank", checks),
             Table("ranks-networks", "The networks", [
