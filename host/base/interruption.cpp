@@ -22,7 +22,6 @@ struct Slot {
 std::array<Slot, 16> slots;
 static_assert(std::atomic<bool>::is_always_lock_free);
 std::atomic<bool> silent{false};
-std::atomic<pid_t> child{0};
 
 using Handler = void (*)(int, siginfo_t*, void*);
 std::array<std::atomic<bool>, 32> kept;          // by signal
@@ -34,7 +33,6 @@ extern "C" void remove_and_end(int signal, siginfo_t* info, void* context) {
     static std::atomic<bool> ending{false};
     if (ending.exchange(true)) return;  // timeout(1), for one, sends a signal twice; the first must not be cut short
     remove_files_in_progress();
-    if (const pid_t running = child.load()) ::kill(running, SIGTERM);
     static constexpr char kMessage[] = "\r\033[Kraya: interrupted\n";
     constexpr std::size_t kClear = 4;  // wipes a progress bar off the line, on a terminal
     const std::size_t skipped = ::isatty(STDERR_FILENO) != 0 ? 0 : kClear;
@@ -69,8 +67,6 @@ void end_cleanly_when_interrupted() {
 }
 
 void keep_handler(int signal, bool keep) { kept.at(static_cast<std::size_t>(signal)) = keep; }
-
-void end_when_interrupted(pid_t process) { child = process; }
 
 void end_silently() { silent = true; }
 

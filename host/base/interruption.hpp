@@ -1,7 +1,5 @@
 // Ctrl-C and its kin: the program ends at once, says so, and leaves no half-written file.
 #pragma once
-#include <sys/types.h>
-
 #include <filesystem>
 
 namespace raya {
@@ -16,9 +14,6 @@ void end_cleanly_when_interrupted();
 
 /// Until `keep` is false no library replaces what the program has installed for that signal.
 void keep_handler(int signal, bool keep = true);
-
-/// An interruption sends SIGTERM to that child process; 0: to none any more.
-void end_when_interrupted(pid_t process);
 
 /// From now on an interruption prints nothing: another process reports it, or this one has reported why it ends.
 void end_silently();

@@ -35,6 +35,12 @@ std::runtime_error system_error(const char* what) {
 
 }  // namespace
 
+std::string ending_text(int status) {
+    if (WIFEXITED(status)) return fmt::format("exit code {}", WEXITSTATUS(status));
+    const char* name = ::sigabbrev_np(WTERMSIG(status));
+    return fmt::format("signal {}{}", WTERMSIG(status), name != nullptr ? fmt::format(" (SIG{})", name) : "");
+}
+
 OwnProcess::OwnProcess(std::vector<std::string> arguments) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("no pipe to a process of its own");

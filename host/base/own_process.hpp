@@ -41,6 +41,9 @@ class OwnProcess {
     std::string text_;    // read and not yet given
 };
 
+/// "signal 11 (SIGSEGV)" or "exit code 1", of a status as waitpid() gives it.
+std::string ending_text(int status);
+
 /// In the child, before anything else: its lines go into the pipe `lines`, which programs that it starts, such as a
 /// driver's compiler, do not get.
 void keep_lines_to_oneself(int lines);

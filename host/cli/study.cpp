@@ -71,8 +71,8 @@ void check_study(const StudyCommand& command) {
     const std::vector<std::string> names = study_names();
     const auto is_study = [&](const std::string& word) { return std::ranges::find(names, word) != names.end(); };
     if (!is_study(command.study) && !command.study.ends_with(".py"))
-        throw UserError(fmt::format("no study {}{}; there are {}, or a file FILE.py with a study of yours",
-                                    command.study, did_you_mean(command.study, names), fmt::join(names, ", ")));
+        throw UserError(fmt::format("no study {}{}; raya help study lists them, and a study of yours is a file FILE.py",
+                                    command.study, did_you_mean(command.study, names)));
     std::error_code error;
     if (!is_study(command.study) && !fs::is_regular_file(command.study, error))
         throw UserError(fmt::format("{}: there is no such file", command.study));

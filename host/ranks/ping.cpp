@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <limits>
-#include <map>
 
 namespace raya {
 namespace {
@@ -51,29 +50,10 @@ MessageTime gather_time(Ranks& ranks, std::uint64_t bytes) {
     return {bytes, least_seconds(turns_of(bytes), [&] { ranks.all_gather(std::span<const std::byte>(own), sizes); })};
 }
 
-struct HostUse {
-    std::uint64_t threads = 0, cores = 0;
-};
-
-std::map<std::string, HostUse> use_of_hosts(std::span<const RankPlace> ranks) {
-    std::map<std::string, HostUse> hosts;
-    for (const RankPlace& rank : ranks) {
-        hosts[rank.host].threads += rank.threads;
-        hosts[rank.host].cores = rank.cores;
-    }
-    return hosts;
-}
-
 Json json_of(const std::vector<MessageTime>& times) {
     Json list = Json::list();
     for (const MessageTime& time : times) list.push_back({{"bytes", time.bytes}, {"seconds", time.seconds}});
     return list;
-}
-
-std::vector<MessageTime> times_of(const Json& list) {
-    std::vector<MessageTime> times;
-    for (const Json& one : list.elements()) times.push_back({one.at("bytes").whole(), one.at("seconds").number()});
-    return times;
 }
 
 }  // namespace
@@ -102,17 +82,6 @@ RankPlace own_place(const std::string& host) {
     const char* const said = std::getenv("POCL_MAX_PTHREAD_COUNT");
     const int threads = said != nullptr ? std::atoi(said) : 0;
     return {host, threads > 0 ? static_cast<std::uint32_t>(threads) : cores, cores};
-}
-
-std::uint32_t cores_of(std::span<const RankPlace> ranks) {
-    std::uint64_t cores = 0;
-    for (const auto& [host, use] : use_of_hosts(ranks)) cores += std::min(use.threads, use.cores);
-    return static_cast<std::uint32_t>(cores);
-}
-
-bool share_cores(std::span<const RankPlace> ranks) {
-    return std::ranges::any_of(use_of_hosts(ranks),
-                               [](const auto& host) { return host.second.threads > host.second.cores; });
 }
 
 PingReport ping(Ranks& ranks) {
@@ -145,19 +114,6 @@ Json PingReport::json() const {
             {"gathers", json_of(gathers)},
             {"alpha_s", network.alpha_s},
             {"beta_s_per_byte", network.beta_s}};
-}
-
-PingReport PingReport::of(const Json& json) {
-    PingReport report;
-    report.library = json.at("library").text();
-    const auto few = [](const Json& number) { return static_cast<std::uint32_t>(number.whole(UINT32_MAX)); };
-    for (const Json& place : json.at("ranks").elements())
-        report.ranks.push_back({place.at("host").text(), few(place.at("threads")), few(place.at("cores"))});
-    report.partner = few(json.at("partner"));
-    report.messages = times_of(json.at("messages"));
-    report.gathers = times_of(json.at("gathers"));
-    report.network = {json.at("alpha_s").number(), json.at("beta_s_per_byte").number()};
-    return report;
 }
 
 }  // namespace raya

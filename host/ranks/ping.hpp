@@ -39,12 +39,6 @@ struct RankPlace {
 /// Of this process.
 RankPlace own_place(const std::string& host);
 
-/// Processors that the ranks use together: of each host as many as they have threads, as far as there are.
-std::uint32_t cores_of(std::span<const RankPlace> ranks);
-
-/// Whether on some host they have more threads than it has processors.
-bool share_cores(std::span<const RankPlace> ranks);
-
 /// What a ping-pong has told.
 struct PingReport {
     std::string library;
@@ -55,7 +49,6 @@ struct PingReport {
     Network network;                    // fitted to the messages
 
     Json json() const;
-    static PingReport of(const Json& json);  // JsonError for another document
 };
 
 /// Two ranks at least. Whole in rank 0 alone.

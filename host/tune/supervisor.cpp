@@ -6,7 +6,6 @@
 
 #include "host/base/json.hpp"
 #include "host/base/own_process.hpp"
-#include "host/base/program.hpp"
 #include "host/base/utc_time.hpp"
 #include "host/error.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "host/base/json.hpp"
 #include "host/base/own_process.hpp"
-#include "host/base/program.hpp"
 #include "host/error.hpp"
 
 namespace raya {

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Runs a program with a kernel cache of its own, for ctest, which runs several at once: two programs must not write one cache (pocl issue 586).
-#   own_cache.sh NAME COMMAND...     the cache is the folder NAME below POCL_CACHE_DIR, or below pocl-cache here; it stays for the next run.
+#   own_cache.sh NAME COMMAND...     the cache is the folder NAME below POCL_CACHE_DIR, or below build/pocl-cache; it stays for the next run.
 #                                    It begins with what RAYA_KERNEL_STORE holds (tests/kernel_cache.hpp)
 set -euo pipefail
-POCL_CACHE_DIR=${POCL_CACHE_DIR:-$PWD/pocl-cache}/$1
+root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
+POCL_CACHE_DIR=${POCL_CACHE_DIR:-$root/build/pocl-cache}/$1
 export POCL_CACHE_DIR
 mkdir -p "$POCL_CACHE_DIR"  # PoCL takes no folder that is not there
 [[ ! -d ${RAYA_KERNEL_STORE-} ]] || cp -r "$RAYA_KERNEL_STORE/." "$POCL_CACHE_DIR"
