@@ -29,6 +29,18 @@ expect 0 "raya "
 away raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 [[ $(head -c 4 "$scratch/home/centre.png" | tail -c 3) == PNG ]] || fail "no PNG"
+if [[ -d $prefix/lib/python3 ]]; then  # the Python module, by itself and as `raya study` starts it
+    away env PYTHONPATH="$prefix/lib/python3/dist-packages" /usr/bin/python3 -c \
+        "import raya; r = raya.render('$prefix/share/raya/scenes/centre.nff'); print(r.hash, raya.program()); open('r.png', 'wb').write(r.png)"
+    expect 0 "474a384374e81c5144a0e5405232a750 $prefix/bin/raya"
+    away raya study fig8 --size 17 -q -o study
+    expect 0 ""
+    [[ -s $scratch/home/study/index.html ]] || fail "no document: $out"
+    chmod o+w "$prefix/lib/python3/dist-packages/raya"
+    away raya study fig8 --size 17 -q -o study
+    expect 2 "refused to run '$prefix/lib/python3/dist-packages': other users may write"
+    chmod o-w "$prefix/lib/python3/dist-packages/raya"
+fi
 cmp <("$build/raya" manual render) "$prefix/share/man/man1/raya-render.1" || fail "another page"
 for shell in bash-completion/completions/raya zsh/site-functions/_raya fish/vendor_completions.d/raya.fish; do
     [[ -s $prefix/share/$shell ]] || fail "no share/$shell"
