@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes an NFF file (host/scene/nff_reader.hpp) as a scene of POV-Ray 3.7 that makes the same picture.
+"""Writes an NFF file (host/scene/nff.hpp) as a scene of POV-Ray 3.7 that makes the same picture.
 
     tools/povray_scene.py SCENE.nff BOUNCES WxH     the scene on stdout, for a picture of W x H pixels
 

@@ -1,5 +1,3 @@
-#include "host/accel/grid.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,8 +5,9 @@
 #include <utility>
 
 #include "host/accel/hit_regions.hpp"
+#include "host/accel/partition.hpp"
 #include "host/error.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 namespace {

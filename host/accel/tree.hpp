@@ -6,6 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "host/model/machine.hpp"
+#include "host/model/number_format.hpp"
+#include "host/scene/packer.hpp"
 #include "kernels/shared/bvh.h"
 
 namespace raya {
@@ -54,5 +57,13 @@ std::uint32_t most_in_leaf(std::uint32_t kind);
 
 /// The same tree for the same items on every machine.
 Tree build_tree(std::vector<TreeItem> items);
+
+/// Appends a tree over the finite objects of a job to its words, as kernels/shared/bvh.h lays it out, and points
+/// accel_at to it. Boxes hold every point at which the kernels can compute a hit of what is in them (hit_regions.hpp),
+/// and room for the walk's rounding. UserError where its rows are too many.
+AccelSummary append_tree(PackedJob& job, const NumberFormat& format);
+
+/// Whether a tree is sooner than testing every ray against all objects, as measured on a CPU of sixteen lanes.
+bool tree_pays(const Scene& scene, const NumberFormat& format);
 
 }  // namespace raya

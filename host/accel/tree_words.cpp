@@ -1,5 +1,3 @@
-#include "host/accel/tree_words.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 #include "host/accel/hit_regions.hpp"
 #include "host/accel/tree.hpp"
 #include "host/error.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 namespace {

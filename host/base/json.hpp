@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-#include "host/base/read_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 
 namespace raya {

@@ -9,14 +9,19 @@
 
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
+
+#include "host/base/say.hpp"
 
 namespace raya {
 namespace {
 
 constexpr const char* kOwnProgram = "/proc/self/exe";
+constexpr const char* kWorker = "--worker";
 
 std::runtime_error system_error(const char* what) {
     return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
@@ -41,14 +46,13 @@ std::string ending_text(int status) {
     return fmt::format("signal {}{}", WTERMSIG(status), name != nullptr ? fmt::format(" (SIG{})", name) : "");
 }
 
-OwnProcess::OwnProcess(std::vector<std::string> arguments) {
+OwnProcess::OwnProcess(const char* task, const Json& settings) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("no pipe to a process of its own");
-    arguments.insert(arguments.begin(), "raya");
-    arguments.insert(arguments.end(), {"--lines", std::to_string(ends[1])});
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
+    const Json order = {
+        {"task", task}, {"lines", ends[1]}, {"verbosity", verbosity() - kSilent}, {"settings", settings}};
+    std::array<std::string, 3> words = {"raya", kWorker, order.dump()};
+    const std::array<char*, 4> pointers = {words[0].data(), words[1].data(), words[2].data(), nullptr};
     const pid_t parent = ::getpid();
     child_ = ::fork();
     if (child_ == 0) become(pointers.data(), ends[1], parent);
@@ -100,10 +104,19 @@ int OwnProcess::wait() {
     return status_;
 }
 
-void keep_lines_to_oneself(int lines) { ::fcntl(lines, F_SETFD, FD_CLOEXEC); }
+std::optional<WorkerOrder> worker_order(int argc, const char* const* argv) {
+    if (argc != 3 || std::string_view(argv[1]) != kWorker) return {};
+    WorkerOrder order = read_json(argv[2], {kWorker}, [](const Json& json) {
+        set_verbosity(kSilent + static_cast<int>(json.at("verbosity").whole(kDetailed - kSilent)));
+        return WorkerOrder{json.at("task").text(), static_cast<int>(json.at("lines").whole(INT_MAX)),
+                           json.at("settings")};
+    });
+    ::fcntl(order.lines, F_SETFD, FD_CLOEXEC);
+    return order;
+}
 
-void send_line(int lines, std::string_view line) {
-    const std::string text = std::string(line) + "\n";
+void send_line(int lines, const Json& object) {
+    const std::string text = object.dump() + "\n";
     for (std::size_t sent = 0; sent < text.size();) {
         const ssize_t count = ::write(lines, text.data() + sent, text.size() - sent);
         if (count < 0 && errno != EINTR) return;

@@ -1,23 +1,27 @@
-// This program once more, as a process of its own that tells the first one what it does.
+// This program once more, as a process of its own that does one task and tells the first one of it.
 #pragma once
 #include <sys/types.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
+
+#include "host/base/json.hpp"
 
 namespace raya {
 
 /// Exit code of a process that could not become this program.
 inline constexpr int kNotStarted = 127;
 
-/// A child that runs this program with other arguments and writes lines into a pipe. It ends when this object does, and
-/// when this process does, however that ends; signals that end a program (Ctrl-C) it leaves to this process.
+/// A child that runs this program for one task and writes lines into a pipe, a JSON object each. It ends when this
+/// object does, and when this process does, however that ends; signals that end a program (Ctrl-C) it leaves to this
+/// process. Its command line is not the user's:
+///
+///     raya --worker '{"task": TASK, "lines": the pipe's number there, "verbosity": above kSilent, "settings": {...}}'
 class OwnProcess {
   public:
-    /// Starts it; "--lines", N, the pipe's number there, follow the arguments. std::runtime_error where that fails.
-    explicit OwnProcess(std::vector<std::string> arguments);
+    /// Starts it. std::runtime_error where that fails.
+    OwnProcess(const char* task, const Json& settings);
     OwnProcess(const OwnProcess&) = delete;
     OwnProcess& operator=(const OwnProcess&) = delete;
     ~OwnProcess();
@@ -44,11 +48,18 @@ class OwnProcess {
 /// "signal 11 (SIGSEGV)" or "exit code 1", of a status as waitpid() gives it.
 std::string ending_text(int status);
 
-/// In the child, before anything else: its lines go into the pipe `lines`, which programs that it starts, such as a
-/// driver's compiler, do not get.
-void keep_lines_to_oneself(int lines);
+/// What the child is to do.
+struct WorkerOrder {
+    std::string task;
+    int lines = -1;  // the pipe
+    Json settings;
+};
+
+/// In the child, before anything else: its order, and the verbosity of the process that gave it. The pipe is not for
+/// programs that the child starts, such as a driver's compiler. Empty in any other process. UserError.
+std::optional<WorkerOrder> worker_order(int argc, const char* const* argv);
 
 /// In the child: writes a line into the pipe. A line that nobody reads is lost.
-void send_line(int lines, std::string_view line);
+void send_line(int lines, const Json& object);
 
 }  // namespace raya

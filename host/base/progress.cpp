@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "host/base/say.hpp"
-#include "host/base/verbosity.hpp"
 
 namespace raya {
 

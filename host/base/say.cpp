@@ -1,8 +1,12 @@
 #include "host/base/say.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <mutex>
 #include <string>
 
@@ -16,6 +20,8 @@ void speak(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);
 }
+
+std::atomic<int> asked_for = kUsual;
 
 }  // namespace
 
@@ -49,6 +55,27 @@ void clear_status() {
     const std::lock_guard lock(speaking);
     if (status_shown) speak("\r\033[K");
     status_shown = false;
+}
+
+void set_verbosity(int level) { asked_for = std::clamp(level, kSilent, kDetailed); }
+
+int verbosity() { return asked_for; }
+
+bool shows_progress() { return !is_quiet() && ::isatty(STDERR_FILENO) != 0; }
+
+void tell(int level, std::string_view text) {
+    if (verbosity() < level) return;
+    std::string lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        lines += fmt::format("raya: {}\n", text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    say(lines);
+}
+
+void warn(std::string_view text) {
+    if (verbosity() > kSilent) say(fmt::format("raya: {}\n", text));
 }
 
 }  // namespace raya

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
-#include "host/base/read_file.hpp"
 #include "host/base/say.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 
 namespace raya {

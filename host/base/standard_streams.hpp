@@ -15,7 +15,7 @@ std::string input_name(const std::filesystem::path& path);
 std::string output_name(const std::filesystem::path& path);
 
 /// The descriptor to read stdin from, once. A terminal's user is told that it is waited for. UnreadableFile
-/// (read_file.hpp) at the second call: what was read is gone.
+/// (whole_file.hpp) at the second call: what was read is gone.
 int take_stdin();
 
 /// Keeps stdout for a file: what this process prints, and those that it starts, goes to stderr from now on. Again: does

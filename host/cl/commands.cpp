@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "host/base/progress.hpp"
-#include "host/base/verbosity.hpp"
+#include "host/base/say.hpp"
 #include "host/cl/error_names.hpp"
 
 namespace raya {

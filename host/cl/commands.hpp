@@ -11,22 +11,18 @@
 #include <utility>
 #include <vector>
 
-#include "host/cl/buffer.hpp"
 #include "host/cl/device.hpp"
-#include "host/cl/host_memory.hpp"
-#include "host/cl/kernel.hpp"
+#include "host/cl/memory.hpp"
 #include "host/cl/opencl.hpp"
 #include "host/cl/profile.hpp"
 #include "host/cl/program.hpp"
-#include "host/cl/staging.hpp"
-#include "host/cl/step_log.hpp"
 
 namespace raya {
 
 /// Whether the device is asked to measure its commands (a device that cannot is not asked).
 enum class Timing { kOn, kOff };
 
-/// Whether all transfers go through pinned memory (host/cl/staging.hpp), or small writes alone, through plain memory;
+/// Whether all transfers go through pinned memory (host/cl/memory.hpp), or small writes alone, through plain memory;
 /// of the device: the former where its memory is its own.
 enum class Transfers { kOfDevice, kDirect, kStaged };
 
@@ -40,7 +36,7 @@ class Session {
     explicit Session(const cl::Device& device, Timing timing = Timing::kOn, Transfers transfers = Transfers::kOfDevice);
     Session(Session&&) = default;  // not copied: a copy would report the same commands twice
     /// Waits for all commands, those that an exception has overtaken too; tells their times to who wants to know
-    /// (host/base/verbosity.hpp).
+    /// (host/base/say.hpp).
     ~Session();
 
     const DeviceInfo& device() const { return info_; }

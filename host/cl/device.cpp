@@ -9,9 +9,8 @@
 #include <optional>
 
 #include "host/base/module.hpp"
-#include "host/base/verbosity.hpp"
-#include "host/cl/driver_cache.hpp"
-#include "host/cl/driver_call.hpp"
+#include "host/base/say.hpp"
+#include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
 
 namespace raya {

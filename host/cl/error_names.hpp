@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "host/cl/driver_call.hpp"
+#include "host/cl/driver.hpp"
 #include "host/cl/opencl.hpp"
 #include "host/error.hpp"
 

@@ -4,9 +4,10 @@
 
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <string_view>
 
-#include "host/base/read_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 
@@ -56,6 +57,19 @@ void append(std::string& source, const std::string& text, const std::string& nam
 }
 
 }  // namespace
+
+std::string patched_text(std::string text, const std::string& file, const std::vector<SourcePatch>& patches) {
+    for (const SourcePatch& patch : patches) {
+        if (patch.file != file) continue;
+        const std::size_t at = text.find(patch.find);
+        if (patch.find.empty() || at == std::string::npos)
+            throw std::logic_error(fmt::format("patch of {}: no text '{}'", file, patch.find));
+        if (text.find(patch.find, at + 1) != std::string::npos)
+            throw std::logic_error(fmt::format("patch of {}: more than one text '{}'", file, patch.find));
+        text.replace(at, patch.find.size(), patch.replace);
+    }
+    return text;
+}
 
 std::string kernel_file(const std::string& file, const KernelSources& sources) {
     return patched_text(read_kernel_file(file, sources.folder), file, sources.patches);

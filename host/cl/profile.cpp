@@ -1,11 +1,15 @@
 #include "host/cl/profile.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <ctime>
 #include <map>
 #include <utility>
 
-namespace raya {
+#include "host/base/say.hpp"
 
+namespace raya {
 namespace {
 
 // Some drivers' clocks have a command end before it started.
@@ -31,6 +35,39 @@ std::vector<LabelSummary> Profile::summary() const {
     }
     for (LabelSummary& line : lines) line.mean_ns = double(line.total_ns) / double(line.launches);
     return lines;
+}
+
+std::uint64_t host_clock_ns() {
+    timespec time{};
+    ::clock_gettime(CLOCK_MONOTONIC_RAW, &time);
+    return std::uint64_t{1'000'000'000} * static_cast<std::uint64_t>(time.tv_sec) +
+           static_cast<std::uint64_t>(time.tv_nsec);
+}
+
+StepLog::Step::Step(StepLog* log, const std::string& name) : log_(log) {
+    if (verbosity() >= kVerbose) {
+        told_ = name;
+        started_ = host_clock_ns();
+    }
+    if (log_ == nullptr) return;
+    number_ = log_->steps_.size();
+    log_->steps_.push_back({name, host_clock_ns(), 0, log_->depth_++});
+}
+
+StepLog::Step::~Step() {
+    if (!told_.empty())
+        tell(kVerbose, fmt::format("{}: {:.3f} s", told_, 1e-9 * static_cast<double>(host_clock_ns() - started_)));
+    if (log_ == nullptr) return;
+    log_->steps_[number_].ended = host_clock_ns();
+    --log_->depth_;
+}
+
+std::vector<HostStep> StepLog::steps() const {
+    std::vector<HostStep> all = steps_;
+    const std::uint64_t now = host_clock_ns();
+    for (HostStep& step : all)
+        if (step.ended == 0) step.ended = now;
+    return all;
 }
 
 }  // namespace raya

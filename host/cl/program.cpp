@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <utility>
 
-#include "host/cl/driver_cache.hpp"
+#include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
 
 namespace raya {
@@ -37,6 +36,15 @@ std::string failure_text(const cl::Error& error, const std::string& what, const 
 
 }  // namespace
 
+std::string argument_name(const cl::Kernel& kernel, cl_uint index) {
+    try {
+        const std::string name = kernel.getArgInfo<CL_KERNEL_ARG_NAME>(index);
+        if (!name.empty()) return name;
+    } catch (const cl::Error&) {  // names are kept for programs built with -cl-kernel-arg-info; some drivers always do
+    }
+    return std::to_string(index);
+}
+
 std::string user_build_options() {
     const char* const options = std::getenv("RAYA_BUILD_OPTIONS");
     return options != nullptr ? options : "";
@@ -50,7 +58,6 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         program_ = cl::Program(context, source);
         return name_of(device);
     });
-    const auto start = std::chrono::steady_clock::now();
     try {
         const DriverCall call(what.c_str());
         program_.build(device, options_.c_str());
@@ -62,7 +69,6 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         program_() = nullptr;  // which has left it locked: to release it would wait for ever
         throw;
     }
-    build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     log_ = log_of(program_, device);
 }
 

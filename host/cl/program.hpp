@@ -1,13 +1,127 @@
-// Kernel source, built for one device.
+// Kernel source, built for one device; and kernels with their argument types: a call with other types does not
+// compile, a kernel with another number of parameters is refused when it is looked up (Program::kernel).
 #pragma once
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "host/cl/kernel.hpp"
+#include "host/cl/error_names.hpp"
+#include "host/cl/memory.hpp"
 #include "host/cl/opencl.hpp"
+#include "host/cl/profile.hpp"
 
 namespace raya {
+
+/// A text as a template's argument.
+template <std::size_t Size>
+struct FixedText {
+    // NOLINTNEXTLINE(google-explicit-constructor): a literal stands for it, as in Uint<"begin">
+    consteval FixedText(const char (&from)[Size]) { std::copy_n(from, Size, text); }
+    char text[Size]{};
+};
+
+/// A kernel's `const uint` parameter by its name, such as Uint<"begin">: another one does not compile in its place.
+template <FixedText Name>
+struct Uint {
+    static constexpr const char* kName = Name.text;
+    cl_uint value;
+};
+
+/// The parameter's name in the kernel's source; its number from 0 where the driver keeps no names.
+std::string argument_name(const cl::Kernel& kernel, cl_uint index);
+
+/// A kernel's argument, to be read: a buffer's name and size, bytes of local memory, a number.
+template <class T>
+std::string argument_text(const Buffer<T>& buffer) {
+    return fmt::format("{}, {} x {} bytes", buffer.name(), buffer.size(), sizeof(T));
+}
+
+template <class T>
+std::string argument_text(const LocalMemory<T>& local) {
+    return fmt::format("local, {} bytes", local.bytes());
+}
+
+template <FixedText Name>
+std::string argument_text(const Uint<Name>& number) {
+    return fmt::format("{}", number.value);
+}
+
+template <class T>
+std::string argument_text(const T& value) {
+    if constexpr (std::is_arithmetic_v<T>)
+        return fmt::format("{}", value);
+    else if constexpr (std::is_enum_v<T>)
+        return fmt::format("{}", static_cast<std::underlying_type_t<T>>(value));
+    else
+        return fmt::format("struct of {} bytes", sizeof(T));
+}
+
+/// Args, in the kernel's order: `const Buffer<T>&` for an input, `Buffer<T>&` for an output, LocalMemory<T> for
+/// __local memory, Uint for a whole number, and plain values such as cl_float or an enum for the rest.
+template <class... Args>
+class Kernel {
+  public:
+    static constexpr std::size_t kArgumentCount = sizeof...(Args);
+
+    Kernel(cl::Kernel kernel, std::string name) : kernel_(std::move(kernel)), name_(std::move(name)) {}
+
+    const std::string& name() const { return name_; }
+    const cl::Kernel& handle() const { return kernel_; }
+
+    /// What a launch with these arguments is told, to be read: names, where the driver knows them, and values.
+    std::vector<ArgumentText> argument_texts(const Args&... args) const {
+        cl_uint index = 0;
+        return {ArgumentText{argument_name(kernel_, index++), argument_text(args)}...};
+    }
+
+    /// Sets all arguments for the launches that follow; DeviceError names the kernel and the argument's number from 0.
+    void set_arguments(Args... args) {
+        cl_uint index = 0;
+        (set_argument(index++, args), ...);
+    }
+
+  private:
+    template <class T>
+    void set_argument(cl_uint index, const Buffer<T>& buffer) {
+        set_bytes(index, sizeof(cl_mem), &buffer.memory()());
+    }
+
+    template <class T>
+    void set_argument(cl_uint index, const LocalMemory<T>& local) {
+        set_bytes(index, local.bytes(), nullptr);
+    }
+
+    template <class T>
+    void set_argument(cl_uint index, const T& value) {
+        static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::is_same_v<T, bool>,
+                      "OpenCL takes neither host pointers nor bool as kernel arguments");
+        set_bytes(index, sizeof(T), &value);
+    }
+
+    void set_bytes(cl_uint index, std::size_t bytes, const void* value) {
+        guarded(fmt::format("setting argument {} of kernel '{}' ({} bytes)", index, name_, bytes),
+                [&] { return kernel_.setArg(index, bytes, value); });
+    }
+
+    cl::Kernel kernel_;
+    std::string name_;
+};
+
+/// The bytes of __local memory that one kernel argument asks for: none, unless it is a LocalMemory.
+template <class T>
+std::size_t local_bytes_of(const T&) {
+    return 0;
+}
+
+template <class T>
+std::size_t local_bytes_of(const LocalMemory<T>& local) {
+    return local.bytes();
+}
 
 /// What RAYA_BUILD_OPTIONS adds to the options of every program.
 std::string user_build_options();
@@ -24,10 +138,6 @@ class Program {
     const std::string& options() const { return options_; }  // as the compiler saw them
     const std::string& log() const { return log_; }          // warnings of a build that succeeded
 
-    /// Seconds that clBuildProgram took, by the host's clock. Not everything: PoCL compiles a kernel's body at its
-    /// first launch for each work-group size, so launch once before timing, with the sizes to be timed.
-    double build_seconds() const { return build_seconds_; }
-
     /// The kernel `kernel_name`, which takes Args (see Kernel).
     /// DeviceError: no such kernel (lists those there are), or another number of parameters (names both numbers).
     template <class... Args>
@@ -40,7 +150,6 @@ class Program {
 
     cl::Program program_;
     std::string name_, options_, log_;
-    double build_seconds_ = 0;
 };
 
 }  // namespace raya

@@ -9,15 +9,11 @@
 
 #include "host/base/progress.hpp"
 #include "host/base/say.hpp"
-#include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/cli/bench_rows.hpp"
-#include "host/cli/bench_tables.hpp"
-#include "host/cli/bench_tune.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
@@ -36,13 +32,11 @@ namespace {
 struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
-    std::vector<std::string> ways;
-    std::vector<std::uint32_t> ranks;
+    std::vector<std::string> variants;
     std::uint32_t samples = 7;
     std::string report, page, baseline;
     double tolerance = 10;  // percent
     bool denormals = false;
-    TuneCommand tune;
 };
 
 // Refuses what could not be compared in the end. Returns the baseline, empty where there is none to be.
@@ -89,8 +83,9 @@ void finish(const BenchCommand& command, const BenchReport& baseline, BenchRepor
 std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, const Scene& scene,
                               const RingSettings& settings, const NumberFormat& format) {
     std::vector<BenchRow> rows;
-    for (const std::string& way : command.ways) rows.push_back(render_row(session, scene, settings, format, way));
-    if (!command.ways.empty()) return rows;
+    for (const std::string& variant : command.variants)
+        rows.push_back(render_row(session, scene, settings, format, variant));
+    if (!command.variants.empty()) return rows;
     for (const std::uint32_t lanes : command.render.lanes ? std::vector{*command.render.lanes} : command.lanes)
         rows.push_back(trace_row(session, scene, settings, format, lanes));
     return rows;
@@ -116,20 +111,12 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
 
 // What would be passed over without a word.
 void refuse_ignored(const CLI::App& parsed, const BenchCommand& command) {
-    if (parsed.count("--tolerance") > 0 && command.baseline.empty())
-        throw UserError("--tolerance says what --compare puts up with: give --compare FILE.json as well");
-    for (const char* option : {"--ways", "--denormals", "--compare"})
-        if (!command.ranks.empty() && parsed.count(option) > 0)
-            throw UserError(
-                fmt::format("{} with --ranks, which times whole renders of one kind: leave one out", option));
-    if (!command.ways.empty() && parsed.count("--accel") > 0)
-        throw UserError("--accel with --ways: the ways none, grid and bvh say which; leave --accel out");
-    if (command.ways.empty() || command.ways != std::vector<std::string>(command.ways.size(), "torus")) return;
+    if (std::ranges::count(command.variants, "torus") < std::max(1L, std::ssize(command.variants))) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
         if (parsed.count(option) > 0)
             throw UserError(
-                fmt::format("{} with --ways torus: the torus has 4x4x4 nodes without a memory limit, whose voxels are "
-                            "no mapping of pixels; leave it out, or add the way none",
+                fmt::format("{} with --variants torus, which has 4x4x4 nodes without a memory limit: leave "
+                            "it out, or add the variant none",
                             option));
 }
 
@@ -142,12 +129,8 @@ Scene scene_of(const BenchCommand& command) {
 }
 
 void bench(const CLI::App& parsed, BenchCommand command) {
-    check_tune_options(parsed, command.tune);
     Warnings warnings;
     warn_of_build_options(warnings);
-    if (command.tune.wanted && is_standard_stream(command.render.scene))
-        throw UserError("bench --tune -: every candidate reads the scene in a process of its own; name a file");
-    if (command.tune.wanted) return bench_tune(parsed, command.render, command.ways, command.report, command.tune);
     refuse_ignored(parsed, command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
@@ -158,8 +141,6 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     const Scene scene = scene_of(command);
     const TunedUse tuned = use_tuned(command.render.no_tuned);
     const RingSettings settings = ring_settings(command.render, scene);
-    if (settings.antialias.method != AntialiasMethod::kNone)
-        throw UserError("bench times the trace kernel: leave --antialias out; raya render --profile times the rest");
     std::optional<ProgressBar> bar(std::in_place, true, "preparing");
     const cl::Device device = choose_device(command.render.device);
     Session session(device);
@@ -176,7 +157,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     print_rows(rows);
     print_tuned(rows);
     if (command.denormals) print_denormals(rows);
-    if (command.ways.empty())
+    if (command.variants.empty())
         print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
                          command.samples);
     BenchReport now = bench_report(rows, session.device());
@@ -194,27 +175,21 @@ void add_bench_command(CLI::App& program) {
         program.add_subcommand("bench", "Measure rays per second by kernel, lanes and format on this device");
     add_examples(*command, {{"raya bench --size 256 --report today.json",
                              "Rates of fp32 and e6m15 at all widths of lanes, kept for a later comparison"},
-                            {"raya bench scenes/centre.nff --size 128 --samples 3 --ways none,bvh",
+                            {"raya bench scenes/centre.nff --size 128 --samples 3 --variants none,bvh",
                              "Whole renders of a scene, every ray against all objects and down a tree of boxes"}});
     const auto options = std::make_shared<BenchCommand>();
     OptionGroup group(*command, "What is measured");
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
              "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512");
-    add_render_options(*command, options->render);
-    add_value(*command, "--ways", options->ways,
-              "Time whole renders in place of the trace kernel, in these ways, with commas between them: none, "
+    add_render_options(*command, options->render, false);
+    add_value(*command, "--variants", options->variants,
+              "Time whole renders in place of the trace kernel, in these variants, with commas between them: none, "
               "grid, bvh: the ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; the first "
               "is what the others are held against")
         ->delimiter(',')
-        ->type_name("none,grid,bvh,torus");
-    add_value(
-        *command, "--ranks", options->ranks,
-        "Time whole renders on these numbers of MPI ranks, with commas between them: the same picture on more "
-        "ranks, and pixels, on the torus objects, in proportion to ranks; efficiency against one rank. raya starts "
-        "them by mpirun, or by the command in RAYA_MPIRUN")
-        ->delimiter(',')
         ->allow_extra_args(false)  // what follows is the scene
-        ->type_name("1,2,...");
+        ->type_name("none,grid,bvh,torus")
+        ->excludes(command->get_option("--accel"));
     command->add_flag("--denormals", options->denormals,
                       "Time every row once more with denormal numbers taken for 0: where that is faster, lanes compute "
                       "with them");
@@ -228,15 +203,16 @@ void add_bench_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write rates, comparison and roofline as a page for a browser; it is what raya page makes of the report. "
              "Measures the device's peak for each format and width of lanes, some seconds each");
-    add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
-             "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
-             "image another one");
+    CLI::Option* compare =
+        add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
+                 "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
+                 "image another one");
     add_value(*command, "--tolerance", options->tolerance,
               "With --compare: percent of its rate, 0..100, that a row may lose; it is slower where its best "
               "and its median have both lost more")
         ->type_name("PERCENT")
-        ->capture_default_str();
-    add_tune_options(*command, options->tune);
+        ->capture_default_str()
+        ->needs(compare);
     command->get_option("--format")
         ->description(
             "Formats to compare, with commas between them: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");

@@ -3,20 +3,24 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
+#include <set>
 
-#include "host/cl/device_peak.hpp"
-#include "host/cli/parse.hpp"
+#include "host/base/say.hpp"
+#include "host/cl/measure.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
 #include "host/report/render_report.hpp"
+#include "host/report/table.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
-#include "host/ring/ring_work.hpp"
+#include "host/ring/ring_result.hpp"
 #include "host/ring/schedule.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
+#include "host/tune/trial.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -77,16 +81,16 @@ TorusSettings torus_of(const RingSettings& s) {
     return t;
 }
 
-// Mean seconds of one call, of as many as take 20 ms together: of shorter ones, clock and launch would count.
-double sample_seconds(const std::function<double()>& seconds) {
-    constexpr double kLeastSeconds = 0.02;
-    double sum = 0;
-    int calls = 0;
-    while (sum < kLeastSeconds) {
-        sum += seconds();
-        ++calls;
-    }
-    return sum / calls;
+// The first row of the same lanes: what the slow-down of a format is measured against.
+const BenchRow& first_of_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
+    return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
+        return r.said.kernel == row.said.kernel && r.said.lanes == row.said.lanes;
+    });
+}
+
+// The first row of the same format: what a row is checked against.
+const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
+    return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
 }
 
 }  // namespace
@@ -101,25 +105,20 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
 }
 
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
-                    const std::string& way) {
+                    const std::string& variant) {
+    const TunedFor what = Workload{variant, format}.what();
     RingSettings s = settings;
     s.format = format;
-    if (way == "torus") {
+    if (what.torus) {
         const TorusSettings t = torus_of(s);
         const std::string array = fmt::format("4x4x4 nodes, torus3d, 4x4x4 voxels, {} bounces", t.bounces);
         return row_of(said_of("torus", scene, s, array), format, std::make_shared<TorusRenderer>(session, scene, t),
                       events_of_torus, [](const TorusResult& r) { return r.render_s; });
     }
-    if (way != "none" && way != "grid" && way != "bvh")
-        throw UserError(fmt::format("--ways {}: must be none, grid, bvh or torus", way));
-    s.accel = parse_accel(way);
-    return row_of(said_of("render, " + way, scene, s, array_text(s)), format,
+    s.accel = {.kind = static_cast<AccelKind>(what.accel)};
+    return row_of(said_of("render, " + variant, scene, s, array_text(s)), format,
                   std::make_shared<RingRenderer>(session, scene, s), events_of_ring,
                   [](const RingResult& r) { return r.render_s; });
-}
-
-const BenchRow& first_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
-    return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
 }
 
 void check_rows(const std::vector<BenchRow>& rows) {
@@ -135,10 +134,78 @@ void check_rows(const std::vector<BenchRow>& rows) {
     }
 }
 
-void take_samples(std::vector<BenchRow>& rows, int samples) {
-    for (int i = 0; i < samples; ++i)
-        for (BenchRow& row : rows) row.seconds.push_back(sample_seconds(row.image_s));
-    for (BenchRow& row : rows) std::sort(row.seconds.begin(), row.seconds.end());
+void take_samples(std::vector<BenchRow>& rows, std::uint32_t samples) {
+    std::vector<std::vector<double>> seconds(rows.size());
+    for (std::uint32_t i = 0; i < samples; ++i)
+        for (std::size_t r = 0; r < rows.size(); ++r) seconds[r].push_back(mean_seconds(rows[r].image_s));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        std::ranges::sort(seconds[r]);
+        rows[r].said.best_s = seconds[r].front();
+        rows[r].said.median_s = seconds[r][samples / 2];
+        rows[r].said.samples = static_cast<int>(samples);
+    }
+}
+
+void print_rows(const std::vector<BenchRow>& rows) {
+    std::vector<std::vector<std::string>> table = {{"kernel", "format", "lanes", "group", "Mrays/s best", "median",
+                                                    "ms best", "median", "speed-up", "slow-down", "build s", "pixels"}};
+    for (const BenchRow& row : rows) {
+        table.push_back({row.said.kernel, row.said.format, std::to_string(row.said.lanes),
+                         std::to_string(row.said.group_size), fmt::format("{:.1f}", row.said.best_rate()),
+                         fmt::format("{:.1f}", row.said.median_rate()), fmt::format("{:.2f}", 1e3 * row.said.best_s),
+                         fmt::format("{:.2f}", 1e3 * row.said.median_s),
+                         fmt::format("{:.2f}", first_of_format(rows, row).said.median_s / row.said.median_s),
+                         fmt::format("{:.2f}", row.said.median_s / first_of_lanes(rows, row).said.median_s),
+                         fmt::format("{:.2f}", row.build_s), row.said.hash.substr(0, 8)});
+    }
+    fmt::print("{}", text_table(table));
+    fmt::print(
+        "speed-up: over the first row of the same format; slow-down: against the first row of the same kernel and "
+        "lanes (medians);\n"
+        "pixels: hash of the image, checked to be the same in all rows of a format\n");
+}
+
+void print_operations(Session& session, const std::vector<NumberFormat>& formats, std::uint32_t lanes, int samples) {
+    std::vector<std::vector<std::string>> table = {{"Gop/s", "lanes"}};
+    table[0].insert(table[0].end(), kOperations.begin(), kOperations.end());
+    std::array<double, kOperations.size()> first{};
+    for (const NumberFormat& format : formats) {
+        OperationRates operations(session, format, lanes);
+        std::array<double, kOperations.size()> rates{};
+        for (std::size_t kind = 0; kind < rates.size(); ++kind) rates[kind] = operations.measure(kind, samples);
+        if (table.size() == 1) first = rates;
+        table.push_back({format_name(format), std::to_string(lanes)});
+        for (std::size_t i = 0; i < rates.size(); ++i)
+            table.back().push_back(
+                fmt::format("{:.2f} ({:.1f} x)", rates[i] * 1e-9, rates[i] > 0 ? first[i] / rates[i] : 0));
+    }
+    fmt::print("\noperations of the number layer, best of {}; in brackets the time against {}\n{}", samples,
+               format_name(formats.front()), text_table(table));
+}
+
+void print_tuned(const std::vector<BenchRow>& rows) {
+    std::set<std::string> files;
+    for (const BenchRow& row : rows)
+        if (row.tuned != "defaults" && row.tuned != "options") files.insert(row.tuned);
+    for (const std::string& file : files) fmt::print("tuned: {}\n", printable(file));
+}
+
+void print_denormals(const std::vector<BenchRow>& rows) {
+    std::vector<std::vector<std::string>> table = {
+        {"kernel", "format", "lanes", "ms best", "flushed", "ratio", "median", "flushed", "ratio"}};
+    for (const BenchRow& row : rows)
+        for (const BenchRow& other : rows) {
+            const bool pair = other.flushed && other.said.kernel == row.said.kernel + ", flushed" &&
+                              other.said.format == row.said.format && other.said.lanes == row.said.lanes;
+            if (!pair) continue;
+            const auto ms = [](double s) { return fmt::format("{:.2f}", 1e3 * s); };
+            table.push_back({row.said.kernel, row.said.format, std::to_string(row.said.lanes), ms(row.said.best_s),
+                             ms(other.said.best_s), fmt::format("{:.2f}", row.said.best_s / other.said.best_s),
+                             ms(row.said.median_s), ms(other.said.median_s),
+                             fmt::format("{:.2f}", row.said.median_s / other.said.median_s)});
+        }
+    fmt::print("\nwith denormal numbers, and with -cl-denorms-are-zero; above 1: lanes compute with them\n{}",
+               text_table(table));
 }
 
 void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const cl::Device& device) {
@@ -166,13 +233,7 @@ BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& de
                        .version = device.version,
                        .driver = device.driver,
                        .rows = {}};
-    for (const BenchRow& row : rows) {
-        report.rows.push_back(row.said);
-        if (row.seconds.empty()) continue;
-        report.rows.back().best_s = row.best();
-        report.rows.back().median_s = row.median();
-        report.rows.back().samples = static_cast<int>(row.seconds.size());
-    }
+    for (const BenchRow& row : rows) report.rows.push_back(row.said);
     return report;
 }
 

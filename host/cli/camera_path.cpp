@@ -6,8 +6,8 @@
 #include <map>
 #include <sstream>
 
-#include "host/base/read_file.hpp"
 #include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/view_options.hpp"
 #include "host/error.hpp"
 #include "host/scene/nff_tokens.hpp"

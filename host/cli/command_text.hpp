@@ -1,5 +1,6 @@
-// The command line as plain text: what help says of each command, for manual pages and completions to be made from.
+// Commands and options as plain text, what --help prints of them for a terminal of any width, and manual pages.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -64,5 +65,20 @@ void for_each_command(const CommandText& command, const Each& each, const std::s
     each(command, path);
     for (const CommandText& one : command.commands) for_each_command(one, each, path);
 }
+
+/// The help of a command that the words `path` lead to, "raya study fig7": usage, summary, examples, commands, options
+/// by their groups, what stands below. No line is longer than `width` letters but where a word is.
+std::string help_text(const CommandText& command, const std::string& path, std::size_t width);
+
+/// Section 1's page "raya" of the program, or "raya-render" of one of its commands, with the commands below it: what
+/// help says of them, in man's macros. `commands` holds the program's commands, none for the program itself; `program`
+/// is name and version.
+struct ManPage {
+    std::string name{};  // "raya-render"
+    std::string text{};
+};
+
+/// The pages of the program and of each of its commands.
+std::vector<ManPage> man_pages(const CommandText& program, const std::string& name_and_version);
 
 }  // namespace raya

@@ -1,13 +1,47 @@
 #include "host/cli/command_tree.hpp"
 
-#include <algorithm>
-#include <sstream>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
-#include "host/cli/help_formatter.hpp"
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "host/cli/command_text.hpp"
 #include "host/cli/options.hpp"
 
 namespace raya {
 namespace {
+
+constexpr std::size_t kDefault = 80, kMinimum = 40, kMaximum = 120, kSane = 10'000;
+
+/// 0: nothing that can be meant.
+std::size_t named_width() {
+    const char* const columns = std::getenv("COLUMNS");
+    if (columns == nullptr) return 0;
+    const std::string_view text = columns;
+    std::size_t width = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), width);
+    const bool sane = error == std::errc{} && end == text.data() + text.size() && width <= kSane;
+    return sane ? width : 0;
+}
+
+std::size_t terminal_width() {
+    winsize size{};
+    return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+/// Letters of a line for text on stdout, 40..120: what the environment variable COLUMNS says, where it is a number from
+/// 1 to 10,000, else the terminal; 80 where stdout is none.
+std::size_t text_width() {
+    std::size_t width = named_width();
+    if (width == 0) width = terminal_width();
+    return width == 0 ? kDefault : std::clamp(width, kMinimum, kMaximum);
+}
 
 // "{1,4,8,16}", which CLI::IsMember shows behind a value's name, as words.
 std::vector<std::string> members_in(const std::string& type) {
@@ -20,6 +54,24 @@ std::vector<std::string> members_in(const std::string& type) {
 }
 
 }  // namespace
+
+std::string HelpFormatter::make_help(const CLI::App* command, std::string path, CLI::AppFormatMode) const {
+    return help_text(command_text(*command), path, text_width());
+}
+
+std::vector<ExampleText> HelpFormatter::examples_of(const CLI::App& command) const {
+    const auto found = examples_.find(&command);
+    return found == examples_.end() ? std::vector<ExampleText>{} : found->second;
+}
+
+void add_examples(CLI::App& command, std::vector<ExampleText> examples) {
+    dynamic_cast<HelpFormatter&>(*command.get_formatter()).keep(command, std::move(examples));
+}
+
+std::vector<ExampleText> examples_of(const CLI::App& command) {
+    const auto* const formatter = dynamic_cast<const HelpFormatter*>(command.get_formatter().get());
+    return formatter == nullptr ? std::vector<ExampleText>{} : formatter->examples_of(command);
+}
 
 OptionText option_text(CLI::Option& option) {
     OptionText text;

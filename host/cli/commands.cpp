@@ -18,16 +18,19 @@
 #include <vector>
 
 #include "host/base/interruption.hpp"
+#include "host/base/own_process.hpp"
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/cl/driver_call.hpp"
+#include "host/cl/driver.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse_failure.hpp"
 #include "host/cli/verbosity_options.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"
+#include "host/tune/trial.hpp"
+#include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -45,11 +48,11 @@ constexpr const char* kEnvironment =
     "\n\nEnvironment:\n"
     "  RAYA_DEVICE         the device, where there is no --device\n"
     "  RAYA_BUILD_OPTIONS  added to every kernel's build options, and told in reports\n"
-    "  RAYA_TUNED          off: take the defaults, not what bench --tune has kept\n"
+    "  RAYA_TUNED          off: take the defaults, not what raya tune has kept\n"
     "  RAYA_PYTHON         the Python with matplotlib that draws plots; default: python3\n"
-    "  RAYA_MPIRUN         the command with which bench --ranks starts ranks; default: mpirun --bind-to none\n"
+    "  RAYA_MPIRUN         the command with which study ranks starts ranks; default: mpirun --bind-to none\n"
     "  RAYA_RANK_TIMEOUT   seconds that a rank waits for the others; default: 600\n"
-    "  XDG_CACHE_HOME      what bench --tune keeps lies in raya/ there; default: ~/.cache";
+    "  XDG_CACHE_HOME      what raya tune keeps lies in raya/ there; default: ~/.cache";
 
 /// Of std::terminate(): memory also ends where no handler is, in a destructor, in a thread or before main().
 [[noreturn]] void end_uncaught() {
@@ -69,6 +72,25 @@ constexpr const char* kEnvironment =
 void open_standard_files() {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(descriptor, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) return;
+}
+
+// What goes wrong becomes the last line of what it writes.
+int run_worker(const WorkerOrder& order) {
+    leave_driver_crashes();  // the process that has started this one tells of them
+    const auto stop = [&](const char* kind, const std::exception& error) {
+        send_line(order.lines, {{"error", error.what()}, {"kind", kind}});
+        return kExitOk;
+    };
+    try {
+        (order.task == kTrialTask ? run_trial : run_checks)(order.lines, order.settings);
+        return kExitOk;
+    } catch (const UserError& error) {
+        return stop("user", error);
+    } catch (const DeviceError& error) {
+        return stop("device", error);
+    } catch (const std::exception& error) {
+        return stop("internal", error);
+    }
 }
 
 int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
@@ -159,6 +181,7 @@ std::shared_ptr<CLI::App> whole_program(Ranks& ranks, const std::string& build) 
     add_info_command(program);
     add_generate_command(program);
     add_bench_command(program);
+    add_tune_command(program);
     add_study_command(program);
     add_page_command(program);
     add_verify_command(program);
@@ -183,6 +206,7 @@ int run_program(int argc, char** argv, const std::string& build) {
     explain_driver_crashes();
     silence_interruptions();
     try {
+        if (const auto order = worker_order(argc, argv)) return run_worker(*order);
         const std::unique_ptr<Ranks> ranks = open_ranks();
         if (ranks)
             name_process_in_crashes(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),

@@ -32,6 +32,7 @@ void add_explore_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
+void add_tune_command(CLI::App& program);
 /// `run` takes the settings as JSON; default: this process becomes the Python that runs the laboratory (tools/lab).
 void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run = {});
 void add_page_command(CLI::App& program);

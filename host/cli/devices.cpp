@@ -3,8 +3,8 @@
 
 #include "host/cl/device.hpp"
 #include "host/cl/kernel_options.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/error.hpp"
 #include "host/report/table.hpp"
 

@@ -12,7 +12,7 @@
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
-#include "host/scene/turn.hpp"
+#include "host/scene/view.hpp"
 
 namespace raya {
 namespace {

@@ -9,8 +9,7 @@
 #include <cerrno>
 #include <optional>
 
-#include "host/base/bytes_hash.hpp"
-#include "host/base/read_file.hpp"
+#include "host/base/encoding.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 #include "host/version.hpp"

@@ -7,12 +7,12 @@
 
 #include "host/base/progress.hpp"
 #include "host/base/whole_file.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 
 namespace raya {
 namespace {

@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse_failure.hpp"

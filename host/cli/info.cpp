@@ -7,14 +7,14 @@
 
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/cli/scene_needs.hpp"
 #include "host/error.hpp"
-#include "host/scene/scene_box.hpp"
+#include "host/scene/view.hpp"
 #include "host/version.hpp"
 
 namespace raya {

@@ -7,10 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "host/base/read_file.hpp"
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/verbosity.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"

@@ -1,10 +1,10 @@
-#include "host/cli/man_page.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
 #include <sstream>
+
+#include "host/cli/command_text.hpp"
 
 namespace raya {
 namespace {

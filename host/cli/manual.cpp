@@ -7,12 +7,11 @@
 #include <memory>
 
 #include "host/base/whole_file.hpp"
+#include "host/cli/command_text.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/completion.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
-#include "host/cli/man_page.hpp"
 #include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"

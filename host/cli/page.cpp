@@ -9,11 +9,10 @@
 
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/verbosity.hpp"
 #include "host/base/whole_file.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/parse_mapping.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "host/accel/grid.hpp"
-#include "host/model/image_size.hpp"
+#include "host/accel/partition.hpp"
+#include "host/model/mapping_rule.hpp"
 #include "host/model/number_format.hpp"
 #include "host/ring/antialias.hpp"
 #include "host/scene/packer.hpp"

@@ -57,8 +57,9 @@ std::string of_values(std::string text) {
     return text;
 }
 
-/// "--size" for names that other programs have for it.
+/// What an option is called here that other programs, or earlier versions, call otherwise.
 std::string usual_name(const std::string& option) {
+    if (option == "--ways") return "--variants";
     return option == "--width" || option == "--height" || option == "--resolution" ? "--size" : option;
 }
 

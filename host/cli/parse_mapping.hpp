@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "host/model/dynamic_plan.hpp"
 #include "host/model/mapping_rule.hpp"
 
 namespace raya {

@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 

@@ -1,9 +1,9 @@
 // raya render: a scene file in, an image and a load report out.
 #include <memory>
 
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_command.hpp"

@@ -5,7 +5,7 @@
 #include "host/base/json.hpp"
 #include "host/base/say.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cl/device_peak.hpp"
+#include "host/cl/measure.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/page.hpp"
 #include "host/error.hpp"

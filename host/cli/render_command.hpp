@@ -4,8 +4,8 @@
 #include <string>
 
 #include "host/base/progress.hpp"
+#include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/verbosity.hpp"
 #include "host/cli/frame_options.hpp"
 #include "host/cli/keep_options.hpp"
 #include "host/cli/render_options.hpp"
@@ -20,7 +20,6 @@
 #include "host/report/view_json.hpp"
 #include "host/ring/ring_result.hpp"
 #include "host/torus/history.hpp"
-#include "host/torus/packet_record.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/version.hpp"
 

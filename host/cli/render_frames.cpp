@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "host/base/bytes_hash.hpp"
+#include "host/base/encoding.hpp"
 #include "host/base/say.hpp"
 #include "host/cl/program.hpp"
 #include "host/cli/file_options.hpp"
@@ -14,7 +14,7 @@
 #include "host/cli/render_command.hpp"
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 
 namespace raya {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "host/accel/tree_words.hpp"
+#include "host/accel/tree.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -116,8 +116,8 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool smooths) {
         ->type_name("NAME");
     add_device_option(command, o.device);
     add_value(command, "--lanes", o.lanes,
-              "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: as the device was tuned (raya bench "
-              "--tune), else its float vectors")
+              "Rays V that a work-item traces at once: 1, 4, 8 or 16; default: as the device was tuned (raya tune), "
+              "else its float vectors")
         ->type_name("V");
     add_value(
         command, "--group", o.group,

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "host/cli/view_options.hpp"
-#include "host/model/image_size.hpp"
-#include "host/ring/ring_settings.hpp"
+#include "host/model/mapping_rule.hpp"
+#include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"
 
 namespace CLI {

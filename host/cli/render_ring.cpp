@@ -7,8 +7,7 @@
 #include "host/model/budget.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
-#include "host/ring/ring_trace.hpp"
-#include "host/ring/ring_work.hpp"
+#include "host/ring/ring_result.hpp"
 #include "host/ring/schedule.hpp"
 
 namespace raya {

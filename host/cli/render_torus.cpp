@@ -8,16 +8,12 @@
 #include "host/cli/rank_report.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/torus/async_machine.hpp"
-#include "host/torus/history_recorder.hpp"
-#include "host/torus/packet_trace.hpp"
-#include "host/torus/queue_search.hpp"
-#include "host/torus/simgrid_files.hpp"
-#include "host/torus/standstill.hpp"
+#include "host/torus/buffer_plan.hpp"
+#include "host/torus/history.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
-#include "host/torus/torus_time.hpp"
+#include "host/torus/torus_result.hpp"
 #include "host/torus/torus_trace.hpp"
-#include "host/torus/torus_work.hpp"
 
 namespace raya {
 namespace {

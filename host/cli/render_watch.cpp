@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/verbosity.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cl/clock_anchor.hpp"
+#include "host/cl/measure.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/ranks/clocks.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/trace_file.hpp"
 

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
+#include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/verbosity.hpp"
 #include "host/cl/program.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"

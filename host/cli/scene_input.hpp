@@ -5,7 +5,7 @@
 
 #include "host/model/number_format.hpp"
 #include "host/scene/length_scale.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/scene.hpp"
 
 namespace CLI {

@@ -5,11 +5,10 @@
 #include <utility>
 
 #include "host/cli/parse.hpp"
-#include "host/model/does_not_fit.hpp"
+#include "host/model/machine.hpp"
 #include "host/ring/pe_memory.hpp"
-#include "host/ring/ring_job.hpp"
 #include "host/ring/ring_plan.hpp"
-#include "host/torus/torus_job.hpp"
+#include "host/torus/torus_plan.hpp"
 
 namespace raya {
 namespace {

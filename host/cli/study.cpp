@@ -17,10 +17,10 @@
 
 #include "host/base/json.hpp"
 #include "host/base/module.hpp"
-#include "host/base/verbosity.hpp"
+#include "host/base/say.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
@@ -89,6 +89,8 @@ void check_study(const StudyCommand& command) {
         throw UserError(
             fmt::format("--network {}: must be two numbers, 0..10^9: microseconds a message, nanoseconds a byte",
                         fmt::join(n, ",")));
+    if (!n.empty() && command.study != "ranks" && command.study != "all")
+        throw UserError(fmt::format("--network is of study ranks; study {} has no network", command.study));
     if (command.folder == "-") throw UserError("-o -: a study is many files, which stdout cannot hold; name a folder");
 }
 

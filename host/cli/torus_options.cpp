@@ -57,7 +57,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "N");
     add("--link-exchange", t.link_exchange,
         "How packets come over the links of a device, the same ones either way: as copies between its buffers or by a "
-        "kernel; auto: as raya bench --tune found for this device, else the kernel on a CPU, elsewhere what is sooner, "
+        "kernel; auto: as raya tune found for this device, else the kernel on a CPU, elsewhere what is sooner, "
         "measured when the render begins",
         "auto|copies|kernel")
         ->default_str("auto");

@@ -7,10 +7,9 @@ namespace raya {
 
 void add_tuned_option(CLI::App& command, bool& no_tuned) {
     const OptionGroup group(command, kKernels);
-    command.add_flag(
-        "--no-tuned", no_tuned,
-        "Take the defaults, not what raya bench --tune has kept for this device and driver; the environment "
-        "variable RAYA_TUNED=off does the same. The image is the same in any case");
+    command.add_flag("--no-tuned", no_tuned,
+                     "Take the defaults, not what raya tune has kept for this device and driver; the environment "
+                     "variable RAYA_TUNED=off does the same. The image is the same in any case");
 }
 
 TunedUse use_tuned(bool no_tuned, Warnings* warnings) {

@@ -1,4 +1,4 @@
-// Whether a command takes what raya bench --tune has kept for its device.
+// Whether a command takes what raya tune has kept for its device.
 #pragma once
 #include "host/cl/tuned.hpp"
 #include "host/cli/scene_input.hpp"

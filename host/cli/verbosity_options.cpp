@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "host/base/verbosity.hpp"
+#include "host/base/say.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/ranks/ranks.hpp"

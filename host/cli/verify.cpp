@@ -8,11 +8,10 @@
 
 #include "host/base/json.hpp"
 #include "host/base/say.hpp"
-#include "host/base/verbosity.hpp"
 #include "host/base/whole_file.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
@@ -20,7 +19,6 @@
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
 #include "host/verify/supervisor.hpp"
-#include "host/verify/worker.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -30,24 +28,8 @@ struct VerifyCommand {
     std::string device, report, page, kernel_dir, only;
     std::uint32_t lanes = 0;
     bool brief = false, quick = false, full = false;
-    int lines = -1;  // a pipe, in the process that runs the checks (verify/worker.hpp)
-    std::size_t worker_device = 0, worker_done = 0;
 
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
-
-    /// Those of the process that runs the checks.
-    std::vector<std::string> arguments() const {
-        std::vector<std::string> all = {"verify", fmt::format("--{}", depth_name(depth()))};
-        const auto add = [&](const char* option, const std::string& value) {
-            if (!value.empty()) all.insert(all.end(), {option, value});
-        };
-        add("--device", device);
-        add("--kernel-dir", kernel_dir);
-        add("--only", only);
-        if (lanes) add("--lanes", std::to_string(lanes));
-        for (const std::string& word : verbosity_words()) all.push_back(word);
-        return all;
-    }
 };
 
 // "57 checks passed, 0 failed, 2 skipped in 12.3 s"
@@ -81,7 +63,7 @@ DeviceChecks verify_one(const VerifyCommand& command, std::size_t index, const V
             [&](const Check& check) {
                 if (!brief || check.verdict.outcome == Outcome::kFail) print(check_lines(check));
             }};
-    DeviceChecks result = supervise(command.arguments(), index, settings, sink, devices);
+    DeviceChecks result = supervise(command.device, index, settings, sink, devices);
     if (!brief || devices == 1 || !result.is_right())
         print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
@@ -123,13 +105,9 @@ void run_verify(const VerifyCommand& command) {
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
     Warnings warnings;
-    if (command.lines < 0) warn_of_build_options(warnings);
-    const VerifySettings settings{.depth = command.depth(),
-                                  .sources = {command.kernel_dir},
-                                  .only = command.only,
-                                  .lanes = command.lanes,
-                                  .done = command.worker_done};
-    if (command.lines >= 0) return run_worker(command.lines, command.device, command.worker_device, settings);
+    warn_of_build_options(warnings);
+    const VerifySettings settings{
+        .depth = command.depth(), .sources = {command.kernel_dir}, .only = command.only, .lanes = command.lanes};
     std::vector<DeviceChecks> all;
     bool right = true;
     for (std::size_t devices = 1; all.size() < devices;) {
@@ -181,10 +159,6 @@ void add_verify_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write every check, and the first that failed in full, as a page for a browser; it is what raya page "
              "makes of the report");
-    // For the process that runs the checks. No group: not in the help.
-    add_value(*command, "--lines", options->lines)->group("");
-    add_value(*command, "--worker-device", options->worker_device)->group("");
-    add_value(*command, "--worker-done", options->worker_done)->group("");
     command->callback([options] { run_verify(*options); });
 }
 

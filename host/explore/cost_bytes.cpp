@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/base/gzip.hpp"
+#include "host/base/encoding.hpp"
 
 namespace raya {
 

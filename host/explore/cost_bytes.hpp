@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/ring/cost_image.hpp"
+#include "host/ring/schedule.hpp"
 
 namespace raya {
 

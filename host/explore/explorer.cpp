@@ -8,7 +8,7 @@
 #include <numeric>
 #include <string_view>
 
-#include "host/base/base64.hpp"
+#include "host/base/encoding.hpp"
 #include "host/base/json.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"

@@ -3,9 +3,9 @@
 #include <string>
 
 #include "host/image/image.hpp"
-#include "host/model/image_size.hpp"
 #include "host/model/machine.hpp"
-#include "host/ring/cost_image.hpp"
+#include "host/model/mapping_rule.hpp"
+#include "host/ring/schedule.hpp"
 #include "kernels/shared/mapping.h"
 
 namespace raya {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "host/model/unit_text.hpp"
-#include "host/ring/exchange_plan.hpp"
 #include "host/ring/mapping.hpp"
+#include "host/ring/route.hpp"
 #include "host/ring/schedule.hpp"
 
 namespace raya {

@@ -7,10 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "host/model/load.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/time_model.hpp"
-#include "host/ring/cost_image.hpp"
+#include "host/ring/schedule.hpp"
 #include "host/study/lattice.hpp"
 #include "kernels/shared/mapping.h"
 

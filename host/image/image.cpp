@@ -8,7 +8,7 @@
 #include <new>
 #include <span>
 
-#include "host/base/bytes_hash.hpp"
+#include "host/base/encoding.hpp"
 
 namespace raya {
 namespace {

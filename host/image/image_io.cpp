@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cstdint>
 #include <stdexcept>
@@ -12,8 +13,6 @@
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/image/pfm.hpp"
-#include "host/image/ppm.hpp"
 
 namespace raya {
 namespace fs = std::filesystem;
@@ -25,6 +24,11 @@ struct Pixels {
     int height;
     int channels;
     std::span<const float> values;
+
+    std::span<const float> row(int number) const {
+        const std::size_t length = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+        return values.subspan(static_cast<std::size_t>(number) * length, length);
+    }
 };
 
 // Of stdout: of formats that need no library.
@@ -89,9 +93,43 @@ std::string encode_codes(const fs::path& path, const char* format, const Pixels&
     return encode(path, format, pixels, codes.data(), attributes, tone.gamma.value_or(0));
 }
 
-template <class Pieces>
-void write_pieces(const fs::path& path, Pieces pieces) {
-    write_whole_file(path, [&] { return pieces.next(); });
+// A header, then the rows one by one, so that a large picture is not in memory twice.
+template <class AppendRow>
+void write_rows(const fs::path& path, const Pixels& pixels, const std::string& header, const AppendRow& append_row) {
+    std::string piece;
+    int row = -1;
+    write_whole_file(path, [&]() -> std::string_view {
+        piece.clear();
+        if (row < 0) piece = header;
+        if (row >= 0 && row < pixels.height) append_row(piece, row);
+        ++row;
+        return piece;
+    });
+}
+
+// Portable pixmap (PPM, J. Poskanzer), binary: one line `P6`, one `width height`, one `255`, then three 8-bit codes a
+// pixel, the top row first: the codes of a PNG.
+void write_ppm(const fs::path& path, const Pixels& pixels, const Tone& tone) {
+    const ToneCodes codes_of(tone);
+    const std::string header = fmt::format("P6\n{} {}\n255\n", pixels.width, pixels.height);
+    write_rows(path, pixels, header, [&](std::string& bytes, int number) {
+        const std::span<const float> row = pixels.row(number);
+        for (std::size_t at = 0; at < row.size(); at += 3)
+            for (const std::uint8_t code : codes_of(&row[at])) bytes += static_cast<char>(code);
+    });
+}
+
+// Portable float map (P. Debevec): one line `PF` (colour) or `Pf` (grey), one `width height`, one `-1.0`
+// (little-endian, on any machine), then the floats, the bottom row first. OpenImageIO 2.4 reads them but does not write
+// them.
+void write_pfm(const fs::path& path, const Pixels& pixels) {
+    const char* const magic = pixels.channels == 3 ? "PF" : "Pf";
+    const std::string header = fmt::format("{}\n{} {}\n-1.0\n", magic, pixels.width, pixels.height);
+    write_rows(path, pixels, header, [&](std::string& bytes, int number) {
+        for (const float value : pixels.row(pixels.height - 1 - number))
+            for (int shift = 0; shift < 32; shift += 8)
+                bytes += static_cast<char>(std::bit_cast<std::uint32_t>(value) >> shift & 255);
+    });
 }
 
 // `tone`: of codes.
@@ -101,8 +139,8 @@ void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttribu
     if (extension == ".exr")
         return write_whole_file(path, encode(path, format, pixels, pixels.values.data(), attributes));
     if (format != nullptr) return write_whole_file(path, encode_codes(path, format, pixels, attributes, tone));
-    if (extension == ".ppm") return write_pieces(path, PpmPieces(pixels.width, pixels.height, pixels.values, tone));
-    write_pieces(path, PfmPieces(pixels.width, pixels.height, pixels.channels, pixels.values));
+    if (extension == ".ppm") return write_ppm(path, pixels, tone);
+    write_pfm(path, pixels);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "host/image/srgb.hpp"
+#include "host/image/tone.hpp"
 
 namespace raya {
 namespace {

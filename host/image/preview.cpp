@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "host/image/srgb.hpp"
+#include "host/image/tone.hpp"
 
 namespace raya {
 namespace {

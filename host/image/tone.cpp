@@ -9,6 +9,10 @@
 namespace raya {
 namespace {
 
+double linear_from_srgb(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
 CodeBorders borders_of(const Tone& tone) {
     if (!tone.gamma) return srgb_borders();
     return code_borders([&](double encoded) { return std::pow(encoded, *tone.gamma); });
@@ -17,6 +21,20 @@ CodeBorders borders_of(const Tone& tone) {
 double luminance(const std::array<double, 3>& v) { return 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2]; }
 
 }  // namespace
+
+const CodeBorders& srgb_borders() {
+    static const CodeBorders borders = code_borders(linear_from_srgb);
+    return borders;
+}
+
+std::uint8_t code_between(const CodeBorders& borders, double linear) {
+    const auto border = std::lower_bound(borders.begin(), borders.end(), linear);
+    return static_cast<std::uint8_t>(border - borders.begin());
+}
+
+float srgb_light(std::uint8_t code) { return static_cast<float>(linear_from_srgb(code / 255.0)); }
+
+std::uint8_t srgb_code(float linear) { return code_between(srgb_borders(), static_cast<double>(linear)); }
 
 const char* tone_curve_name(ToneCurve curve) { return curve == ToneCurve::kReinhard ? "reinhard" : "clip"; }
 

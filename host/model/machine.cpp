@@ -1,5 +1,6 @@
 #include "host/model/machine.hpp"
 
+#include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -92,6 +93,14 @@ Machine torus() {
 }
 
 }  // namespace
+
+std::string accel_text(const Accel& accel) {
+    if (accel.kind == AccelKind::kNone) return "none";
+    if (accel.kind == AccelKind::kBvh) return "bvh";
+    if (!accel.divisions) return "grid";
+    const Divisions& d = *accel.divisions;
+    return fmt::format("grid:{}x{}x{}", d[0], d[1], d[2]);
+}
 
 const std::vector<Machine>& machines() {
     static const std::vector<Machine> all = {

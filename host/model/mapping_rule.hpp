@@ -1,11 +1,22 @@
-// Mappings before an image and its PEs are known (kernels/shared/mapping.h has their definitions).
+// Image sizes, and how pixels go to PEs before an image and its PEs are known (kernels/shared/mapping.h defines
+// mappings).
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
 #include "kernels/shared/mapping.h"
 
 namespace raya {
+
+inline constexpr std::uint32_t kLargestSide = 16384;  // pixels
+
+struct ImageSize {
+    std::uint32_t width = 0, height = 0;  // pixels
+
+    std::uint64_t pixels() const { return std::uint64_t{width} * height; }
+    bool operator==(const ImageSize&) const = default;
+};
 
 /// How slots go to PEs where there is not one PE for each.
 enum class Fold : std::uint32_t { kCyclic = RAYA_FOLD_CYCLIC, kBlock = RAYA_FOLD_BLOCK };
@@ -43,5 +54,22 @@ inline MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
 }
 /// Each pixel at random, shares even.
 inline MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
+
+inline constexpr std::uint32_t kLargestChunk = kLargestSide * kLargestSide;  // pixels: the largest image
+inline constexpr std::uint64_t kLargestOverhead = 1'000'000'000;  // cycles; times the largest image below 2^58
+
+struct DynamicPlan {
+    std::uint32_t chunk = 1;     // pixels a request, 1..kLargestChunk
+    std::uint64_t overhead = 0;  // cycles that a PE spends on a request, 0..kLargestOverhead
+    double static_share = 0;     // 0..1 of each PE's own pixels that it starts with, unasked; above 0 it is a hybrid
+
+    bool operator==(const DynamicPlan&) const = default;
+};
+
+/// Whether all its figures are in their ranges.
+inline bool is_plan(const DynamicPlan& plan) {
+    const bool is_share = !std::signbit(plan.static_share) && plan.static_share <= 1;  // no NaN, no -0
+    return plan.chunk >= 1 && plan.chunk <= kLargestChunk && plan.overhead <= kLargestOverhead && is_share;
+}
 
 }  // namespace raya

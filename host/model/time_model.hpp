@@ -1,14 +1,36 @@
-// Modelled time of a machine: counted cycles and words, times what a cycle and a word take on it.
+// What PEs compute and send, how evenly it is spread (in the terms of the papers), and the modelled time: counted
+// cycles and words, times what each takes on a machine.
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
-#include "host/model/communication.hpp"
-#include "host/model/load.hpp"
 #include "host/model/machine.hpp"
 
 namespace raya {
+
+/// Transfers and their words, counted where they were made. A word is the machine's: one number.
+struct Communication {
+    std::uint64_t broadcasts = 0, broadcast_words = 0;        // host to all PEs
+    std::uint64_t rotations = 0, rotation_words = 0;          // every PE to its neighbour
+    std::uint64_t gathers = 0, gather_words = 0;              // all PEs to the host
+    std::uint64_t transfers = 0, transfer_words = 0;          // one PE to one other, over the bus
+    std::uint64_t pe_broadcasts = 0, pe_broadcast_words = 0;  // one PE to all, over the bus
+};
+
+/// Loads of P PEs, in modelled cycles.
+struct Load {
+    std::vector<std::uint64_t> per_pe;
+    double mean = 0;
+    std::uint64_t max = 0, min = 0;
+    double imbalance = 0;   // u = (max - mean) / mean (Kohata & Ito 1993, Fig. 8); 0 where there is no load
+    double speedup = 0;     // sum / max
+    double efficiency = 0;  // speedup / P
+};
+
+/// `per_pe` holds one load for each PE, at least one.
+Load load_of(std::vector<std::uint64_t> per_pe);
 
 /// Cycles that the busiest PE spends on the arithmetic between neighbours (machine/budget.hpp); 0 without
 /// anti-aliasing.
@@ -37,8 +59,8 @@ struct AsynchronousTime {
     std::uint64_t queue_max = 0;            // rays that waited for a main task, at most
 };
 
-/// Of a torus, in milliseconds (host/torus/torus_time.hpp). A real machine lies between `overlapped` and `stepwise`: it
-/// neither overlaps all nor waits every time. The scene's way to the nodes and the image's way from the root to the
+/// Of a torus, in milliseconds (host/torus/torus_result.hpp). A real machine lies between `overlapped` and `stepwise`:
+/// it neither overlaps all nor waits every time. The scene's way to the nodes and the image's way from the root to the
 /// host are not in it.
 struct TorusTime {
     double compute_ms = 0;     // of the node that computes most

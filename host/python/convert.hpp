@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/base/json.hpp"
-#include "host/ring/cost_image.hpp"
+#include "host/ring/schedule.hpp"
 
 namespace raya {
 

@@ -4,11 +4,11 @@
 #include <dlfcn.h>
 #include <pybind11/pybind11.h>
 
-#include "host/base/verbosity.hpp"
+#include "host/base/say.hpp"
 #include "host/error.hpp"
-#include "host/model/does_not_fit.hpp"
+#include "host/model/machine.hpp"
 #include "host/python/session.hpp"
-#include "host/torus/standstill.hpp"
+#include "host/torus/torus_result.hpp"
 #include "host/version.hpp"
 #include "kernels/shared/traffic.h"
 

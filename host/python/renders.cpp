@@ -13,10 +13,9 @@
 #include "host/model/t805.hpp"
 #include "host/python/session.hpp"
 #include "host/torus/async_machine.hpp"
-#include "host/torus/node_buffers.hpp"
-#include "host/torus/packet_trace.hpp"
-#include "host/torus/simgrid_files.hpp"
 #include "host/torus/topology.hpp"
+#include "host/torus/torus_settings.hpp"
+#include "host/torus/torus_trace.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {

@@ -14,12 +14,9 @@
 #include "host/model/machine.hpp"
 #include "host/python/session.hpp"
 #include "host/scene/generate.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/packer.hpp"
-#include "host/scene/random_view.hpp"
-#include "host/scene/spread.hpp"
-#include "host/scene/turn.hpp"
+#include "host/scene/view.hpp"
 
 namespace raya {
 namespace {

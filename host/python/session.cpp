@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <utility>
 
-#include "host/base/verbosity.hpp"
+#include "host/base/say.hpp"
 #include "host/cl/device.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/cli/help_formatter.hpp"
 #include "host/cli/parse_failure.hpp"
 #include "host/cli/verbosity_options.hpp"
 #include "host/error.hpp"
@@ -38,7 +38,7 @@ class SignalHandlers {
 };
 
 // PoCL runs kernels in threads that it makes when it is asked for devices, and has the private memory of a work-group
-// on their stacks (host/cl/driver_call.cpp).
+// on their stacks (host/cl/driver.cpp).
 cl::Device choose_device_with_stacks(const std::string& name) {
     pthread_attr_t before, large;
     ::pthread_getattr_default_np(&before);

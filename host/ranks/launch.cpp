@@ -12,8 +12,7 @@
 #include "host/base/module.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/ranks/deadline.hpp"
-#include "host/ranks/mpi_module.hpp"
+#include "host/ranks/transport.hpp"
 #include "host/version.hpp"
 
 namespace raya {

@@ -3,8 +3,6 @@
 // failed.
 #define OMPI_SKIP_MPICXX  // the C++ bindings, which MPI has given up
 #define MPICH_SKIP_MPICXX
-#include "host/ranks/mpi_module.hpp"
-
 #include <fmt/core.h>
 #include <mpi.h>
 #include <sys/prctl.h>
@@ -20,7 +18,6 @@
 #include <vector>
 
 #include "host/error.hpp"
-#include "host/ranks/deadline.hpp"
 #include "host/ranks/transport.hpp"
 
 namespace raya {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -156,5 +157,16 @@ class Ranks {
     std::vector<std::uint32_t> host_ranks_;  // of this host, ascending
     RankTraffic traffic_;
 };
+
+/// Adding `offset_ns` to a time of this rank gives rank 0's, at most `uncertainty_ns` off.
+struct RankClock {
+    std::int64_t offset_ns = 0;
+    std::uint64_t uncertainty_ns = 0;
+};
+
+/// Each rank in turn asks rank 0 for its time, again and again, and takes the answer that came soonest: it lies between
+/// the two looks at its own clock (as NTP has it, D. L. Mills 1991). Clocks may drift apart afterwards, which is not
+/// seen. `now`: nanoseconds.
+RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now);
 
 }  // namespace raya

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "host/base/base64.hpp"
+#include "host/base/encoding.hpp"
 #include "host/base/json.hpp"
 #include "host/model/budget.hpp"
 #include "host/model/unit_text.hpp"

@@ -9,13 +9,11 @@
 
 #include "host/base/json.hpp"
 #include "host/cl/profile.hpp"
-#include "host/model/communication.hpp"
-#include "host/model/load.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/time_model.hpp"
 #include "host/report/roofline.hpp"
 #include "host/report/torus_report.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 
 namespace raya {
 

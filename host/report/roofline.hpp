@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "host/base/json.hpp"
-#include "host/cl/peak.hpp"
 #include "host/cl/profile.hpp"
 #include "host/model/machine.hpp"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "host/base/json.hpp"
-#include "host/model/accel.hpp"
+#include "host/model/machine.hpp"
 #include "host/scene/length_scale.hpp"
-#include "host/scene/nff_remark.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

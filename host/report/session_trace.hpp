@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "host/cl/profile.hpp"
-#include "host/cl/step_log.hpp"
 #include "host/report/trace_file.hpp"
 
 namespace raya {

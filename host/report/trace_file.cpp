@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "host/base/gzip.hpp"
+#include "host/base/encoding.hpp"
 
 namespace raya {
 namespace {

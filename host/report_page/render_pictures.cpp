@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/base/base64.hpp"
+#include "host/base/encoding.hpp"
 #include "host/image/plain_png.hpp"
 #include "host/page/drawing.hpp"
 #include "host/page/html.hpp"

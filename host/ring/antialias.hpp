@@ -3,7 +3,7 @@
 #include <string>
 
 #include "host/model/time_model.hpp"
-#include "host/ring/exchange_plan.hpp"
+#include "host/ring/route.hpp"
 #include "kernels/shared/neighbours.h"
 
 namespace raya {

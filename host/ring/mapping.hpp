@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string>
 
-#include "host/model/image_size.hpp"
 #include "host/model/mapping_rule.hpp"
 
 namespace raya {

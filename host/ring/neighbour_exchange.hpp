@@ -7,9 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "host/ring/bus.hpp"
-#include "host/ring/exchange_plan.hpp"
-#include "host/ring/ring.hpp"
+#include "host/ring/bus_and_ring.hpp"
+#include "host/ring/route.hpp"
 
 namespace raya {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "host/model/does_not_fit.hpp"
+#include "host/model/machine.hpp"
 #include "host/model/unit_text.hpp"
 
 namespace raya {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/bytes_hash.hpp"
+#include "host/base/encoding.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"

@@ -8,14 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "host/ring/bus.hpp"
-#include "host/ring/contrast.hpp"
-#include "host/ring/filter.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/ring/neighbour_exchange.hpp"
-#include "host/ring/ring_job.hpp"
+#include "host/ring/ring_plan.hpp"
 #include "host/ring/ring_result.hpp"
-#include "host/ring/ring_settings.hpp"
 #include "host/ring/ring_state.hpp"
+#include "host/ring/smoothing.hpp"
 #include "host/ring/tracer.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"

@@ -3,6 +3,44 @@
 #include <stdexcept>
 
 namespace raya {
+namespace {
+
+constexpr std::uint64_t kColourBytes = 3 * sizeof(float);
+
+std::uint64_t launches_of(const RingResult& result, const std::string& label) {
+    std::uint64_t launches = 0;
+    for (const LabelSummary& c : result.commands)
+        if (c.label == label && c.kind == "kernel") launches += c.launches;
+    return launches;
+}
+
+// Beside pixels, at each launch: the words of the scene, which were broadcast once, and the counters.
+std::uint64_t launch_bytes(const RingSettings& s, const RingResult& r, const std::string& label) {
+    const std::uint64_t words = r.words_local ? r.communication.broadcast_words * s.mapping.pes : 0;
+    const std::uint64_t counters = std::uint64_t{s.mapping.pes} * r.group_size * RAYA_EVENTS;
+    return launches_of(r, label) * (sizeof(std::uint32_t) * words + 2 * sizeof(std::uint64_t) * counters);
+}
+
+KernelWork trace_work(const RingSettings& s, const RingResult& r, const Phase& phase, bool first) {
+    const std::uint64_t pixels = std::uint64_t{s.mapping.width} * s.mapping.height;
+    KernelWork work = work_of(phase.name, phase.events);
+    const std::uint64_t written = (kColourBytes + sizeof(std::uint64_t)) * (first ? pixels : r.recomputed);
+    const std::uint64_t read = first ? 0 : pixels + kColourBytes * r.recomputed;
+    work.bytes = launch_bytes(s, r, phase.name) + written + read;
+    return work;
+}
+
+// Of each pixel that has the neighbour, for three colours: so many operations, so many colours moved.
+KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::uint64_t operations,
+                          std::uint64_t colours) {
+    KernelWork work;
+    work.label = label;
+    work.operations = 3 * operations * pixels;
+    work.bytes = colours * kColourBytes * pixels;
+    return work;
+}
+
+}  // namespace
 
 const CostImage& Phase::cost() const {
     if (!kept_cost) throw std::logic_error("costs of pixels that were not kept: RingSettings::keep_costs");
@@ -15,6 +53,23 @@ double trace_seconds(const RingResult& result) {
         if (command.label == kTracePass || command.label == kSupersamplePass)
             ns += static_cast<double>(command.total_ns);
     return ns > 0 ? ns * 1e-9 : result.render_s;
+}
+
+std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const RingResult& result) {
+    std::vector<KernelWork> works;
+    for (std::size_t i = 0; i < result.phases.size(); ++i)
+        works.push_back(trace_work(settings, result, result.phases[i], i == 0));
+    const std::uint64_t width = settings.mapping.width, height = settings.mapping.height;
+    const std::uint64_t beside = 2 * (width - 1) * height, above = 2 * width * (height - 1);  // both sides
+    if (settings.antialias.method == AntialiasMethod::kFilter) {
+        works.push_back(neighbour_work("filter.sum_rows", beside, 1, 3));
+        works.push_back(neighbour_work("filter.sum_columns", above, 1, 3));
+        works.push_back(neighbour_work("filter.take_means", width * height, 1, 2));
+    }
+    // Both colours clamped to 0..1, their difference, the threshold: as compare_cycles() has it.
+    if (settings.antialias.method == AntialiasMethod::kSupersample)
+        works.push_back(neighbour_work("supersample.compare", beside + above, 4 + 1 + 1, 2));
+    return works;
 }
 
 }  // namespace raya

@@ -1,5 +1,6 @@
 // What a render on a ring machine made, counted and measured.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,13 +8,14 @@
 
 #include "host/cl/profile.hpp"
 #include "host/image/image.hpp"
-#include "host/model/accel.hpp"
-#include "host/model/communication.hpp"
-#include "host/model/load.hpp"
 #include "host/model/machine.hpp"
+#include "host/model/time_model.hpp"
 #include "host/ranks/ranks.hpp"
-#include "host/ring/cost_image.hpp"
+#include "host/report/roofline.hpp"
+#include "host/report/trace_file.hpp"
 #include "host/ring/pe_memory.hpp"
+#include "host/ring/ring_plan.hpp"
+#include "host/ring/schedule.hpp"
 #include "host/scene/length_scale.hpp"
 
 namespace raya {
@@ -60,5 +62,24 @@ struct RingResult {
 
 /// Seconds that tracing one image took on the device; by the host's clock where the device does not time its commands.
 double trace_seconds(const RingResult& result);
+
+/// One for each label of a kernel, those that did not run among them. Bytes, at least:
+///   - trace, supersample: at each launch the words of the scene, by every PE that copies them into its own memory;
+///   counters
+///     read and written; of each pixel traced 12 bytes of colour and 8 of cycles written; supersampling also reads a
+///     mark of each pixel and the colour of those marked. Words of the scene that a kernel reads again and again
+///     where they lie (--accel grid) are not in it.
+///   - sums of neighbours: of each pixel that has such a neighbour, its colour and the sum read, the sum written;
+///     comparisons: of each, both colours read; means: of each pixel, the sum read and the mean written.
+std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const RingResult& result);
+
+/// A track for the machine's phases and one for each of `pes` PEs (report/traced_pes.hpp), from the trace's time 0 on:
+/// broadcast, trace, then rotations (or turns on the bus) and sums or comparisons, supersampling, then gather, each PE
+/// waiting for the busiest one. Counters: rays alive, one for each PE that traces, and u of the phase. The times are
+/// those of modelled_time() (machine/time_model.hpp), and end at its total: as it does, phases are taken as a whole
+/// where a PE's memory holds only a block of its share; and a side's share of the arithmetic between neighbours is a
+/// quarter of it. Where the machine's rates are not known, or `pes` is 0, there is no process, and the metadata says
+/// why.
+void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes);
 
 }  // namespace raya

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <span>
 
-#include "host/base/bytes_hash.hpp"
+#include "host/base/encoding.hpp"
 #include "host/error.hpp"
 
 namespace raya {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/base/json.hpp"
-#include "host/model/communication.hpp"
+#include "host/model/time_model.hpp"
 
 namespace raya {
 

@@ -1,5 +1,3 @@
-#include "host/ring/ring_trace.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "host/model/budget.hpp"
 #include "host/report/traced_pes.hpp"
 #include "host/ring/mapping.hpp"
+#include "host/ring/ring_result.hpp"
 
 namespace raya {
 namespace {

@@ -1,21 +1,21 @@
-// Loads from a cost image: of static mappings, and of dynamic distribution, whose run is simulated.
-//
-// Dynamic distribution is list scheduling (R. L. Graham, "Bounds for Certain Multiprocessing Anomalies", 1966): the
-// rest of the image lies in a queue at the root, cut into chunks in scan-line order, and the PE that is free first
-// takes the next one. What the model leaves out: the root answers at once, so requests of many PEs at a time do not
-// wait for each other, nor for the link; a request costs its PE always the same; a PE asks when it is done, not
-// earlier; the last answer, "no more", costs nothing. Results are on their way while the next chunk is computed.
+// What every pixel of an image costs: from it follows the load of every mapping, without tracing again.
 #pragma once
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "host/model/dynamic_plan.hpp"
-#include "host/model/load.hpp"
-#include "host/ring/cost_image.hpp"
+#include "host/model/mapping_rule.hpp"
+#include "host/model/time_model.hpp"
 #include "kernels/shared/mapping.h"
 
 namespace raya {
+
+/// Modelled cycles of each pixel, all its rays included. Their sum must stay below 2^63, which leaves room for
+/// requests.
+struct CostImage {
+    std::uint32_t width = 0, height = 0;  // pixels
+    std::vector<std::uint64_t> cycles;    // height x width, row-major
+};
 
 /// The text that --mapping reads as this plan; a hybrid's with all its figures.
 std::string dynamic_text(const DynamicPlan& plan);

@@ -7,9 +7,8 @@
 
 #include "host/base/progress.hpp"
 #include "host/cl/kernels.hpp"
-#include "host/cl/launch_guard.hpp"
 #include "host/ring/antialias.hpp"
-#include "host/ring/pe_segment.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/trace_progress.h"
 

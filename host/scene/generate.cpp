@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -12,9 +13,7 @@
 namespace raya {
 namespace {
 
-double rounded(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
-
-Vec3 rounded(const Vec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
+constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // to which coordinates are rounded
 
 void check_count(const char* kind, int count) {
     if (count < 1 || count > kMostSpheres)
@@ -41,9 +40,42 @@ void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t cou
             return side / 2 + (side / 2 - half + half * room) * random.uniform(-1, 1);
         };
         const double x = place(cell.x), y = place(cell.y), z = place(cell.z);
-        scene.spheres.push_back(
-            {rounded(corner + Vec3(x, y, z)), rounded(radius), static_cast<int>(scene.spheres.size() % 4)});
+        scene.spheres.push_back({rounded(corner + Vec3(x, y, z), kMillionths), rounded(radius, kMillionths),
+                                 static_cast<int>(scene.spheres.size() % 4)});
     }
+}
+
+struct Ring {
+    int count;
+    double distance;  // of the centres from the z axis
+    double height;    // of the centres
+    double radius;    // of the spheres
+    double first;     // azimuth of the first sphere, in turns
+    int first_surface;
+    int surface_count;  // surfaces taken in turn
+};
+
+void add_ring(Scene& scene, const Ring& ring) {
+    for (int i = 0; i < ring.count; ++i) {
+        const double azimuth = 2 * std::numbers::pi * (ring.first + static_cast<double>(i) / ring.count);
+        const Vec3 centre(rounded(ring.distance * std::cos(azimuth), kTenThousandths),
+                          rounded(ring.distance * std::sin(azimuth), kTenThousandths), ring.height);
+        scene.spheres.push_back({centre, ring.radius, ring.first_surface + i % ring.surface_count});
+    }
+}
+
+Sphere draw_sphere(SplitMix& random, const ClusterShape& shape) {
+    const double radius = random.uniform(shape.smallest, shape.largest);
+    const double azimuth = random.uniform(0, 2 * std::numbers::pi);
+    const double distance = shape.radius * std::sqrt(random.uniform(0, 1));
+    const double height = radius + random.uniform(0, shape.height);
+    return {rounded({distance * std::cos(azimuth), distance * std::sin(azimuth), height}), rounded(radius), 0};
+}
+
+bool touches(const Sphere& sphere, const std::vector<Sphere>& others) {
+    return std::ranges::any_of(others, [&](const Sphere& other) {
+        return (sphere.centre - other.centre).length() < sphere.radius + other.radius;
+    });
 }
 
 }  // namespace
@@ -92,16 +124,103 @@ Scene generate_random(int count, std::uint64_t seed) {
         const double red = random.uniform(0.25, 1), green = random.uniform(0.25, 1), blue = random.uniform(0.25, 1);
         const double specular = i % 3 == 0 ? 0 : i % 3 == 1 ? 0.2 : 0.5;
         scene.surfaces.push_back(
-            {rounded({red, green, blue}), 0.9 - specular, specular, i % 3 == 0 ? 0.0 : 30.0, 0, 1, {}});
+            {rounded({red, green, blue}, kMillionths), 0.9 - specular, specular, i % 3 == 0 ? 0.0 : 30.0, 0, 1, {}});
     }
     const double filling = std::cbrt(0.05 * 8 / (count * 4 / 3.0 * std::numbers::pi));
     for (int i = 0; i < count; ++i) {
         const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
         const double radius = std::min(0.6, filling * random.uniform(0.5, 1.5));
         const int surface = static_cast<int>(random.next() % kSurfaces);
-        scene.spheres.push_back({rounded({x, y, z}), rounded(radius), surface});
+        scene.spheres.push_back({rounded({x, y, z}, kMillionths), rounded(radius, kMillionths), surface});
     }
     share_surfaces(scene);
+    return scene;
+}
+
+Scene generate_centre() {
+    Scene scene;
+    scene.name = "centre.nff";
+    scene.background = {0.3, 0.5, 0.85};
+    scene.view = {{0, -11, 4.4}, {0, 0, 1.35}, {0, 0, 1}, 28, 0, 256, 256};
+    scene.lights = {{{-7, -8, 11}, Colour(0.62, 0.6, 0.55)}, {{8, -5, 7}, Colour(0.22, 0.24, 0.3)}};
+    scene.surfaces = {
+        {{1, 1, 1}, 0.02, 0.12, 200, 0.85, 1.5, {}},     // glass
+        {{1, 1, 1}, 0.08, 0.85, 200, 0, 1, {}},          // mirror
+        {{0.9, 0.1, 0.08}, 0.75, 0.25, 60, 0, 1, {}},    // glossy red
+        {{0.95, 0.65, 0.08}, 0.75, 0.25, 60, 0, 1, {}},  // glossy yellow
+        {{0.1, 0.25, 0.85}, 0.75, 0.25, 60, 0, 1, {}},   // glossy blue
+        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, 2}},
+    };
+    scene.spheres.push_back({{0, 0, 1.3}, 1.3, 0});
+    scene.spheres.push_back({{0, 0, 3.05}, 0.45, 1});
+    add_ring(scene, {12, 1.85, 0.4, 0.4, 0.02, 1, 4});
+    add_ring(scene, {8, 1.35, 2.45, 0.28, 0.04, 0, 2});
+    scene.planes.push_back({{0, 0, 1}, 0, 5});
+    share_surfaces(scene);
+    return scene;
+}
+
+Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
+    constexpr int kTries = 200;  // for a place where the sphere touches no other
+    enum { kGlass, kMirror, kMatt, kFloor };
+    Scene scene;
+    scene.name = fmt::format("cluster{}.nff", seed);
+    scene.background = {0.3, 0.5, 0.85};
+    scene.view = {{0, -11, 4.4}, {0, 0, 1.1}, {0, 0, 1}, shape.angle_degrees, 0, 256, 256};
+    scene.lights = {{{-7, -8, 11}, Colour(0.7, 0.7, 0.7)}};
+    scene.surfaces = {
+        {{1, 1, 1}, 0.02, 0.12, 200, 0.85, 1.5, {}},
+        {{1, 1, 1}, 0.1, 0.8, 200, 0, 1, {}},
+        {{0.9, 0.3, 0.1}, 0.85, 0, 0, 0, 1, {}},
+        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, shape.checker}},
+    };
+    SplitMix random(seed);
+    for (int i = 0; i < shape.spheres(); ++i) {
+        Sphere sphere = draw_sphere(random, shape);
+        for (int tries = 0; tries < kTries && touches(sphere, scene.spheres); ++tries)
+            sphere = draw_sphere(random, shape);
+        sphere.surface = i < shape.glass ? kGlass : i < shape.glass + shape.mirrors ? kMirror : kMatt;
+        scene.spheres.push_back(sphere);
+    }
+    scene.planes.push_back({{0, 0, 1}, 0, kFloor});
+    share_surfaces(scene);
+    return scene;
+}
+
+Scene scattered(const Scene& even, std::uint64_t seed) {
+    const Scene random = generate_random(static_cast<int>(even.spheres.size()), seed);
+    Scene scene = even;
+    for (std::size_t i = 0; i < scene.spheres.size(); ++i) {
+        Sphere& sphere = scene.spheres[i];
+        for (int axis = 0; axis < 3; ++axis)
+            sphere.centre[axis] = std::clamp(random.spheres[i].centre[axis], -1 + sphere.radius, 1 - sphere.radius);
+    }
+    return scene;
+}
+
+Scene moved_within(const Scene& scene) {
+    constexpr double kVoxel = 2.0 / kObjectSides;
+    constexpr double kGap = kVoxel / 16;  // the most by which registration takes a sphere for larger than it is
+    Scene moved = scene;
+    for (Sphere& sphere : moved.spheres)
+        for (int axis = 0; axis < 3; ++axis) {
+            double& at = sphere.centre[axis];
+            const double low = -1 + kVoxel * std::clamp(std::floor((at + 1) / kVoxel), 0.0, kObjectSides - 1.0);
+            const double room = std::min(sphere.radius + kGap, kVoxel / 2);
+            at = std::clamp(at, low + room, low + kVoxel - room);
+        }
+    return moved;
+}
+
+Scene touching_walls(Scene scene) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0}) {
+            const auto reach = [&](const Sphere& sphere) { return side * sphere.centre[axis] + sphere.radius; };
+            Sphere& outermost =
+                *std::max_element(scene.spheres.begin(), scene.spheres.end(),
+                                  [&](const Sphere& a, const Sphere& b) { return reach(a) < reach(b); });
+            outermost.centre[axis] = side * (1 - outermost.radius);
+        }
     return scene;
 }
 

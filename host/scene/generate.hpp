@@ -2,6 +2,7 @@
 // rounded to decimals, which also keeps the files short. Surfaces are shared (share_surfaces).
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "host/scene/scene.hpp"
@@ -14,6 +15,13 @@ inline constexpr int kHighestGearsSize = 16;      // 598,017 polygons
 inline constexpr int kMostSpheres = 1'000'000;    // of uniform and random
 inline constexpr int kMostVoxelsAlongAxis = 256;  // of uniform
 inline constexpr int kMostVoxels = 1'048'576;     // of uniform
+
+/// Lengths that generators put into files, to nine decimals, three more than SPD's own files have, or to fewer: short,
+/// and the same on every platform, whose sines and cosines differ in the last bits.
+inline double rounded(double x, double parts = 1e9) { return std::round(x * parts) / parts + 0.0; }
+inline Vec3 rounded(const Vec3& v, double parts = 1e9) {
+    return {rounded(v.x, parts), rounded(v.y, parts), rounded(v.z, parts)};
+}
 
 /// SPD's `balls`, the sphereflake: every sphere carries nine of a third of its radius. 9^0 + ... + 9^level spheres
 /// above one square polygon, three lights. Same spheres in the same order as SPD 3.9 writes (E. Haines). Throws
@@ -61,5 +69,20 @@ struct ClusterShape {
 /// A cluster of spheres that do not touch, where there is room, above a checkered floor under one light: scenes as
 /// heavy and as uneven as Kohata & Ito's figures have it, by the mean of many seeds. 256 x 256.
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape = {});
+
+inline constexpr std::uint32_t kObjectSides = 4;  // voxels along each axis of the cube
+
+/// The spheres of `even`, which lies in the cube [-1, 1]^3, about centres that are drawn from the cube and moved into
+/// it as far as their spheres stick out; all else, radii and surfaces of each sphere, stays as it is.
+Scene scattered(const Scene& even, std::uint64_t seed);
+
+/// Each sphere moved, by its radius and a 16th of a voxel's side at most along each axis, until it lies within the
+/// voxel of its centre and as far from its sides, or in the middle; the cube [-1, 1]^3 is cut into 4 x 4 x 4. Its
+/// radius is less than half a voxel's side.
+Scene moved_within(const Scene& scene);
+
+/// The outermost sphere on each side moved outwards until it touches the side of the cube [-1, 1]^3: the scene's box is
+/// that cube then.
+Scene touching_walls(Scene scene);
 
 }  // namespace raya

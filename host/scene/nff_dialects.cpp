@@ -1,8 +1,11 @@
 #include "host/scene/nff_dialects.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 
+#include "host/scene/nff.hpp"
 #include "host/scene/nff_tokens.hpp"
 
 namespace raya {
@@ -83,6 +86,20 @@ Header mail_header(std::string_view text) {
     const std::string_view header = text.substr(0, at);
     const auto ends = [&](char c) { return std::count(header.begin(), header.end(), c); };
     return {at, static_cast<int>(std::max(ends('\n'), ends('\r')))};
+}
+
+void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line) {
+    const auto same =
+        std::find_if(remarks.begin(), remarks.end(), [&](const NffRemark& known) { return known.what == what; });
+    if (same == remarks.end())
+        remarks.push_back({what, 1, line});
+    else
+        ++same->count;
+}
+
+std::string remark_text(const std::string& file, const NffRemark& remark) {
+    const std::string all = remark.count > 1 ? fmt::format(" ({} in all)", remark.count) : "";
+    return fmt::format("{}:{}: {}{}", file, remark.line, remark.what, all);
 }
 
 }  // namespace raya

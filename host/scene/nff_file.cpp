@@ -1,12 +1,88 @@
+// NFF files, read; and scenes written as NFF.
 #include <fmt/core.h>
 
-#include "host/base/read_file.hpp"
+#include <cstddef>
+#include <iterator>
+
 #include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/nff_dialects.hpp"
-#include "host/scene/nff_reader.hpp"
 
 namespace raya {
+namespace {
+
+std::string text_of(const Vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
+std::string after_blank(const Vec3& v) { return fmt::format(" {}", text_of(v)); }
+
+class NffWriter {
+  public:
+    explicit NffWriter(const Scene& scene) : scene_(scene) {}
+
+    std::string write() {
+        write_head();
+        for (const Sphere& s : scene_.spheres) {
+            write_surface(s.surface, false);
+            line("s {} {}", text_of(s.centre), s.radius);
+        }
+        for (const Plane& p : scene_.planes) {
+            write_surface(p.surface, true);
+            line("#raya plane {} {}", text_of(p.normal), p.distance);
+        }
+        for (const Polygon& p : scene_.polygons) {
+            write_surface(p.surface, true);
+            write_polygon(p);
+        }
+        for (const Cone& c : scene_.cones) {
+            write_surface(c.surface, false);
+            line("c {} {}\n  {} {}", text_of(c.base), c.base_radius, text_of(c.apex), c.apex_radius);
+        }
+        return text_;
+    }
+
+  private:
+    template <typename... Arguments>
+    void line(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+        fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
+        text_ += '\n';
+    }
+
+    void write_head() {
+        const View& view = scene_.view;
+        line("b {}", text_of(scene_.background));
+        line("v\nfrom {}\nat {}\nup {}", text_of(view.from), text_of(view.at), text_of(view.up));
+        line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
+        for (const Light& light : scene_.lights)
+            line("l {}{}", text_of(light.position), light.colour ? after_blank(*light.colour) : "");
+    }
+
+    /// An `f` where it differs from the last one, and the checker, which holds for one object only.
+    void write_surface(int index, bool flat) {
+        const Surface& s = scene_.surfaces.at(static_cast<std::size_t>(index));
+        const std::string fill = fmt::format("f {} {} {} {} {} {}", text_of(s.colour), s.diffuse, s.specular, s.shine,
+                                             s.transmittance, s.refraction);
+        if (fill != last_fill_) line("{}", fill);
+        last_fill_ = fill;
+        if (!s.checker) return;
+        if (!flat) throw UserError(scene_.name + ": NFF has no checkered spheres and cones; use a plane or polygon");
+        line("#raya checker {} {} {}", text_of(s.checker->even), text_of(s.checker->odd), s.checker->size);
+    }
+
+    void write_polygon(const Polygon& polygon) {
+        const bool patch = !polygon.normals.empty();
+        line("{} {}", patch ? "pp" : "p", polygon.vertices.size());
+        for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
+            line("{}{}", text_of(polygon.vertices[i]), patch ? after_blank(polygon.normals[i]) : "");
+    }
+
+    const Scene& scene_;
+    std::string text_;
+    std::string last_fill_;
+};
+
+}  // namespace
 
 Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks) {
     std::string text;
@@ -22,5 +98,7 @@ Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remark
         throw UserError(fmt::format("{}:1: this looks like {} file; raya reads NFF", input_name(path), format));
     }
 }
+
+std::string write_nff(const Scene& scene) { return NffWriter(scene).write(); }
 
 }  // namespace raya

@@ -1,5 +1,3 @@
-#include "host/scene/nff_reader.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,12 +9,11 @@
 #include <optional>
 #include <utility>
 
+#include "host/scene/nff.hpp"
 #include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_tokens.hpp"
 #include "host/scene/outline.hpp"
-#include "host/scene/polygon_plane.hpp"
-#include "host/scene/triangulate.hpp"
-#include "host/scene/view_fault.hpp"
+#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {

@@ -1,4 +1,5 @@
-// Whether the outline of a polygon can be traced.
+// What an outline of a polygon, a viewpoint and colours must be, whoever gives them: a scene's file or the command
+// line.
 #pragma once
 #include <string>
 
@@ -29,5 +30,11 @@ OutlineVerdict tidy_outline(Polygon& polygon);
 /// `v` with length 1. A vector that has it already, to rounding, is left as it is, so that a scene survives being
 /// written and read. The zero vector is returned as it is.
 Vec3 unit_vector(const Vec3& v);
+
+/// Why nothing can be seen from there: "'from' and 'at' are the same point"; empty where it can.
+std::string view_fault(const View& view);
+
+/// Whether light can have that colour: components from 0 to kLargestNumber.
+bool is_colour(const Colour& colour);
 
 }  // namespace raya

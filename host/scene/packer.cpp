@@ -8,9 +8,7 @@
 #include <numbers>
 
 #include "host/error.hpp"
-#include "host/scene/polygon_plane.hpp"
-#include "host/scene/triangulate.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {

@@ -24,6 +24,7 @@
 //   - the main task's queue takes all that arrives, even while the main task waits for a port.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "host/model/t805.hpp"
@@ -66,5 +67,14 @@ struct AsyncResult {
 /// buffers; std::logic_error for a history that is none (check_history); std::runtime_error where the machine stands
 /// still, which it cannot with 2 or more as `entering`.
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine = {});
+
+/// The platform file (XML): a host for each node, by its number, of one operation a cycle; a link for each way of a
+/// wire and one for the wire itself, which both ways share; routes between neighbours alone, as messages are stored in
+/// every node and sent on. SimGrid's own torus (<cluster topology="TORUS">) would let a message hold all links of its
+/// way at once, and has no wire that two ways share.
+std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machine);
+
+/// The replay, in the lines that tools/simgrid/replay.cpp tells of.
+std::string simgrid_replay(const raya_torus& torus, const History& history, const AsyncMachine& machine);
 
 }  // namespace raya

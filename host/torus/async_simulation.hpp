@@ -1,5 +1,5 @@
-// The events of the asynchronous torus: what async_machine.hpp describes, as one class in three files.
-// async_machine.cpp has the time, async_nodes.cpp the processors, async_links.cpp the links and their threads.
+// The events of the asynchronous torus: what async_machine.hpp describes, as one class in two files:
+// async_machine.cpp has the time, async_simulation.cpp the processors, the links and their threads.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -76,7 +76,7 @@ class AsyncSimulation {
     void foresee(double after, What what, std::uint32_t place, std::uint32_t version);
     void happen(const Event& event);
 
-    // async_nodes.cpp
+    // The processors.
     void add_job(std::uint32_t node, const MessageJob& job);
     void work(std::uint32_t node);
     void stop_main(Node& n);
@@ -86,7 +86,7 @@ class AsyncSimulation {
     void send_made(std::uint32_t node);
     void deliver(std::uint32_t message);
 
-    // async_links.cpp
+    // The links.
     std::uint32_t class_of(std::uint32_t message) const {
         return history_.messages[message].kind == RAYA_KIND_RETURN ? 0 : 1;
     }

@@ -7,13 +7,60 @@
 
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
-#include "host/scene/word_records.hpp"
-#include "host/torus/bisection.hpp"
+#include "host/scene/packer.hpp"
+#include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
 namespace {
+
+// Twice as long; the longest that fits, where twice as long does not.
+std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
+    const auto fits = [&](std::uint32_t queue) { return trial.bytes(buffers_for(queue)) <= trial.limit; };
+    const std::uint32_t next = std::min(2 * tried, trial.most);
+    if (!fits(tried) || fits(next)) return next;
+    const std::uint32_t longest = last_that_holds(tried, next, fits);
+    return longest > tried ? longest : next;
+}
+
+// Entries of lists that are made in a fraction of a second.
+constexpr std::uint64_t kFewEntries = std::uint64_t{1} << 24;
+
+std::uint64_t voxels_of(const Divisions& divisions) {
+    return std::uint64_t{divisions[0]} * divisions[1] * divisions[2];
+}
+
+class Trial {
+  public:
+    Trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels)
+        : job_(job), format_(format), voxels_(voxels) {}
+
+    std::optional<TrialNodes> operator()(const std::array<std::uint32_t, 3>& nodes) {
+        TrialNodes tried{0, voxels_};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            while (tried.voxels[axis] < nodes[axis]) tried.voxels[axis] *= 2;
+        const std::uint64_t voxels = voxels_of(tried.voxels);
+        if (voxels > kMostCutVoxels || everywhere_ * voxels > kFewEntries) return {};
+        try {
+            const Partition cut = partition(job_, format_, tried.voxels);
+            everywhere_ = cut.objects.size() == cut.distinct * voxels ? cut.distinct : 0;
+            // Which voxels a node holds does not depend on its links.
+            tried.words = fullest_node_words(job_, cut, make_torus(nodes, Links::kTorus3d));
+            return tried;
+        } catch (const TooManyEntries&) {
+            return {};
+        }
+    }
+
+  private:
+    const PackedJob& job_;
+    const NumberFormat format_;
+    const Divisions voxels_;
+    // How many objects the last trial found in every voxel, if all. Formats without a bound for the registration do
+    // that to any number of voxels; no number of nodes helps then, and the lists grow long.
+    std::uint64_t everywhere_ = 0;
+};
 
 constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
@@ -121,6 +168,49 @@ std::string remedies(const Demand& demand, std::uint64_t words, std::uint32_t fe
 }
 
 }  // namespace
+
+NodeBuffers buffers_for(std::uint32_t queue) { return {queue, std::max(1u, queue / 4)}; }
+
+std::uint32_t default_queue(std::uint32_t nodes) { return std::min(8192u, (1u << 24) / nodes); }
+
+std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::uint32_t links) {
+    constexpr std::uint64_t kRayBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
+    constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
+    const std::uint64_t return_boxes = links > 0 ? links + 1 : 0;
+    return sizeof(std::uint32_t) * words + kRayBytes * (buffers.queue + std::uint64_t{2} * links * buffers.box) +
+           kReturnBytes * return_boxes * buffers.box;
+}
+
+QueueFound longer_queue(std::uint32_t queue, const QueueTrial& trial) {
+    QueueFound found{.queue = queue};
+    try {
+        while (!found.ends && found.queue < trial.most) {
+            const std::uint32_t next = next_queue(found.queue, trial);
+            const NodeBuffers buffers = buffers_for(next);
+            if (!trial.device_holds(buffers)) break;
+            found.ends = trial.ends(buffers);
+            found.queue = next;
+        }
+    } catch (const DeviceError&) {  // a machine with that queue does not fit into the device
+    }
+    found.bytes = trial.bytes(buffers_for(found.queue));
+    found.fits = found.bytes <= trial.limit;
+    return found;
+}
+
+std::string queue_remedy(const QueueFound& found) {
+    if (!found.ends)
+        return fmt::format(
+            "no queue up to {} packets is long enough, and the device cannot hold longer ones; use fewer nodes",
+            found.queue);
+    if (found.fits) return fmt::format("--queue {} is long enough (tried)", found.queue);
+    return fmt::format("no queue that fits a node's memory is long enough, --queue {} --pe-memory {} is (tried)",
+                       found.queue, (found.bytes + 1023) / 1024 * 1024);
+}
+
+NodeTrial trial_of(const PackedJob& job, const NumberFormat& format, const Divisions& voxels) {
+    return Trial(job, format, voxels);
+}
 
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t fewest,

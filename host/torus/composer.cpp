@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "host/cl/launch_guard.hpp"
+#include "host/cl/kernels.hpp"
 #include "host/error.hpp"
 
 namespace raya {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 #include "kernels/shared/node_counts.h"
 
 namespace raya {

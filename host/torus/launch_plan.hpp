@@ -5,10 +5,8 @@
 
 #include "host/cl/device_info.hpp"
 #include "host/cl/kernel_options.hpp"
-#include "host/torus/node_buffers.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/node_share.hpp"
-#include "host/torus/node_status.hpp"
 #include "host/torus/torus_settings.hpp"
 
 namespace raya {

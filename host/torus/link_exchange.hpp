@@ -11,7 +11,6 @@
 #include "host/cl/kernels.hpp"
 #include "host/ranks/transport.hpp"
 #include "host/torus/node_share.hpp"
-#include "host/torus/node_status.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {

@@ -4,7 +4,6 @@
 #include <tuple>
 #include <utility>
 
-#include "host/torus/census.hpp"
 #include "kernels/shared/node_counts.h"
 
 namespace raya {

@@ -5,20 +5,63 @@
 #include <string>
 #include <vector>
 
-#include "host/cl/launch_guard.hpp"
+#include "host/cl/kernels.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/torus/launch_plan.hpp"
 #include "host/torus/link_exchange.hpp"
-#include "host/torus/node_buffers.hpp"
-#include "host/torus/node_kernels.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/node_share.hpp"
-#include "host/torus/node_work.hpp"
-#include "host/torus/packet_record.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/torus/torus_settings.hpp"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
+
+/// Packets that live, or rays that have still to be made.
+struct Census {
+    std::uint64_t live = 0, full = 0, progress = 0, cycles = 0;  // full: queues; cycles: of the busiest node
+    std::uint32_t fullest = 0;                                   // packets in the fullest queue
+    bool all_made = true;
+    double looked = 0;  // share of the rows that nodes have looked at
+};
+
+/// `capacity`: packets that a queue holds.
+Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity);
+
+/// Modelled cycles of each node in the superstep.
+std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes);
+
+/// Room that packets ask for before they are accepted or treated (kernels/shared/traffic.h).
+enum class Room : cl_uint {
+    kWholeTree,  // for all that a ray's tree may turn into
+    kTight       // as little as can be
+};
+
+namespace node_kernels {
+
+using Words = const Buffer<std::uint32_t>&;  // of all nodes, where each one's start, where boxes have been sent
+using Run = const Buffer<raya_run>&;
+using First = Uint<"first_node">;        // slot of the first node that a launch is for
+using Work = Uint<"work">;               // of a node in a launch
+using Again = Uint<"again">;             // 1: a launch goes on with what the last one has left
+using Own = LocalMemory<std::uint32_t>;  // of one node
+using Queues = Buffer<raya_packet>&;
+using Boxes = Buffer<std::uint32_t>&;
+using Returns = Buffer<raya_head>&;  // at the root
+using Status = Buffer<std::uint32_t>&;
+using Counters = Buffer<std::uint64_t>&;
+using Treated = Buffer<raya_treated>&;
+
+using Inject = DescribedKernel<"torus/inject.cl", "inject", Words, Words, Run, First, Work, Again, Own, Queues, Status,
+                               Counters, Counters, Counters>;
+using TraceVoxel = DescribedKernel<"torus/trace_voxel.cl", "trace_voxel", Words, Words, Run, First, Room, Work, Again,
+                                   Own, Queues, Status, Counters, Counters, Counters, Treated>;
+using Route = DescribedKernel<"torus/route.cl", "route", Words, Words, Run, First, Work, Again, Own, Queues, Boxes,
+                              Boxes, Returns, Status, Counters>;
+using Accept = DescribedKernel<"torus/accept.cl", "accept", Words, Words, Run, Room, Uint<"turn">, First, Words, Words,
+                               Words, Work, Again, Own, Queues, Boxes, Boxes, Boxes, Returns, Status, Counters>;
+
+}  // namespace node_kernels
 
 /// The kernels are launched with one work-group for each node, again and again where a launch leaves something to do;
 /// each step is labelled with its kernel's name. DeviceError where the device ends loops even of the smallest launch.

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 
 namespace raya {
 namespace {

@@ -1,9 +1,12 @@
-// The nodes of the torus divided over ranks: each has a brick of them, in slots of its device.
+// Which nodes of the torus a rank has, and what each says of itself.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "kernels/shared/torus.h"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
 
@@ -45,6 +48,17 @@ class NodeShare {
     std::vector<std::uint32_t> rank_of_, slot_of_;
     std::vector<std::vector<std::uint32_t>> nodes_of_;
     std::vector<std::vector<std::uint32_t>> from_elsewhere_;  // [link]: nodes of other ranks whose link leads here
+};
+
+/// What every node says of itself, as the host has read it: [node][RAYA_STATUS_WORDS].
+class NodeStatus {
+  public:
+    explicit NodeStatus(std::uint32_t nodes) : words(std::size_t{nodes} * RAYA_STATUS_WORDS) {}
+    explicit NodeStatus(std::vector<std::uint32_t> read) : words(std::move(read)) {}
+    std::uint32_t at(std::uint32_t node, std::uint32_t word) const {
+        return words[std::size_t{node} * RAYA_STATUS_WORDS + word];
+    }
+    std::vector<std::uint32_t> words;
 };
 
 }  // namespace raya

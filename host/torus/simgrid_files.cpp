@@ -1,11 +1,10 @@
-#include "host/torus/simgrid_files.hpp"
-
 #include <fmt/format.h>
 
 #include <iterator>
 #include <set>
 #include <utility>
 
+#include "host/torus/async_machine.hpp"
 #include "host/torus/link_exchange.hpp"
 
 namespace raya {

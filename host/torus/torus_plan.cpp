@@ -2,16 +2,110 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstddef>
 
 #include "host/cl/tuned.hpp"
 #include "host/error.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
-#include "host/torus/windows.hpp"
 #include "kernels/shared/packet.h"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
+namespace {
+
+PackedJob packed(const Session& session, const Scene& scene, const TorusSettings& settings, const LengthScale& scale) {
+    const StepLog::Step step = session.step("pack scene");
+    return pack_job(scene, job_settings(settings, scale));
+}
+
+PackedJob outline_of(const raya_job& header, bool has_patches) {
+    PackedJob outline(header, std::vector<std::uint32_t>(kWordsOf<raya_job>), has_patches);
+    outline.set_header(header);
+    return outline;
+}
+
+std::uint64_t fullest_words(const NodeMemories& memories) {
+    std::uint64_t words = 0;
+    for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
+        words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
+    return words;
+}
+
+NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const TorusSettings& s,
+                       const NodeTrial& trial) {
+    return plan_buffers(scene.name, memories, s.torus, s.memory_bytes, s.queue,
+                        raya_shortest_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
+}
+
+// The job of a machine on one rank.
+TorusJob divide(const Session& session, const Scene& scene, const TorusSettings& s, const NodeShare& share,
+                const DeviceMemory& device) {
+    const LengthScale scale = length_scale(scene, s.format);
+    const PackedJob job = packed(session, scene, s, scale);
+    const StepLog::Step step = session.step("divide scene");
+    const Partition partition = raya::partition(job, s.format, s.voxels);
+    TorusJob all{outline_of(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0, 0};
+    all.buffers = buffers_of(scene, all.memories, s, trial_of(job, s.format, s.voxels));
+    check_device_memory(scene.name, all.buffers, share.most_nodes(), session.device().name, device);
+    set_windows(all.memories, s, job, partition);
+    all.words = all.memories.words.size();
+    all.fullest_words = fullest_words(all.memories);
+    return all;
+}
+
+// The words of one rank's nodes, out of those of all.
+NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_t>& nodes) {
+    NodeMemories own;
+    own.copies = all.copies;
+    own.most_objects = all.most_objects;
+    own.starts.push_back(0);
+    for (const std::uint32_t node : nodes) {
+        own.words.insert(own.words.end(), all.words.begin() + all.starts[node],
+                         all.words.begin() + all.starts[node + 1]);
+        own.starts.push_back(static_cast<std::uint32_t>(own.words.size()));
+    }
+    return own;
+}
+
+// All of a job but the nodes' words.
+struct Figures {
+    raya_job header;
+    bool has_patches;
+    LengthScale scale;
+    NodeBuffers buffers;
+    std::uint64_t words, fullest_words, copies;
+    std::uint32_t most_objects;
+};
+
+void send_to_others(const TorusJob& all, const NodeShare& share, Ranks& ranks) {
+    const NodeMemories& m = all.memories;
+    Figures f{
+        all.outline.header(), all.outline.has_patches(), all.scale, all.buffers, all.words, all.fullest_words, m.copies,
+        m.most_objects};
+    ranks.broadcast(f);
+    for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
+        const NodeMemories of_rank = memories_of(m, share.nodes_of(rank));
+        ranks.send(rank, std::span<const std::uint32_t>(of_rank.starts));
+        ranks.send(rank, std::span<const std::uint32_t>(of_rank.words));
+    }
+}
+
+TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
+    Figures f;
+    ranks.broadcast(f);
+    NodeMemories m;
+    m.copies = f.copies;
+    m.most_objects = f.most_objects;
+    m.starts.resize(share.nodes() + 1);
+    ranks.receive(0, std::span(m.starts));
+    m.words.resize(m.starts.back());
+    ranks.receive(0, std::span(m.words));
+    return {outline_of(f.header, f.has_patches), std::move(m), f.scale, f.buffers, f.words, f.fullest_words};
+}
+
+}  // namespace
 
 TorusSettings usual_torus(const ImageSize& size) {
     TorusSettings s;
@@ -73,6 +167,34 @@ void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob
     for (std::size_t node = 0; node < windows.size(); ++node)
         put_record(memories.words, memories.starts[node] + offsetof(raya_node, window) / sizeof(std::uint32_t),
                    windows[node]);
+}
+
+NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
+    check_packets(s, scene);
+    const LengthScale scale = length_scale(scene, s.format);
+    const PackedJob job = pack_job(scene, job_settings(s, scale));
+    const NodeMemories memories = pack_nodes(job, partition(job, s.format, s.voxels), s.torus);
+    const std::uint64_t words = fullest_words(memories);
+    const NodeBuffers buffers = buffers_of(scene, memories, s, {});
+    return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
+}
+
+DeviceMemory least_memory(const DeviceInfo& device, Ranks& ranks) {
+    DeviceMemory least{device.global_memory_bytes, device.max_allocation_bytes};
+    for (const DeviceMemory& other : ranks.all_gather(least))
+        least = {std::min(least.all, other.all), std::min(least.one_buffer, other.one_buffer)};
+    return least;
+}
+
+TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
+                        const NodeShare& share, const DeviceMemory& device, Ranks& ranks) {
+    if (!ranks.first()) return receive_job(share, ranks);
+    TorusJob all = divide(session, scene, settings, share, device);
+    if (!ranks.many()) return all;
+    const StepLog::Step step = session.step("send nodes");
+    send_to_others(all, share, ranks);
+    all.memories = memories_of(all.memories, share.own());
+    return all;
 }
 
 }  // namespace raya

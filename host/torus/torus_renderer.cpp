@@ -8,12 +8,10 @@
 #include <stdexcept>
 
 #include "host/torus/buffer_plan.hpp"
-#include "host/torus/census.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/node_array.hpp"
-#include "host/torus/standstill.hpp"
-#include "host/torus/torus_job.hpp"
 #include "host/torus/torus_plan.hpp"
+#include "host/torus/torus_result.hpp"
 
 namespace raya {
 namespace {

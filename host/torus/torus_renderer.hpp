@@ -8,10 +8,7 @@
 #include "host/ranks/ranks.hpp"
 #include "host/scene/length_scale.hpp"
 #include "host/scene/scene.hpp"
-#include "host/torus/node_work.hpp"
-#include "host/torus/packet_record.hpp"
-#include "host/torus/queue_search.hpp"
-#include "host/torus/superstep.hpp"
+#include "host/torus/buffer_plan.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/torus/torus_settings.hpp"
 

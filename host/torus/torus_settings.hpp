@@ -13,6 +13,12 @@
 
 namespace raya {
 
+/// Buffers of a node beside its words, in packets of 16 words (kernels/shared/packet.h).
+struct NodeBuffers {
+    std::uint32_t queue = 0;  // packets that wait in the node
+    std::uint32_t box = 0;    // packets in one outbox or one inbox
+};
+
 /// Who makes the primary rays: the root, or every node those that enter the box at its voxels.
 enum class Injection { kRoot, kAll };
 

@@ -1,17 +1,43 @@
-// The modelled torus machine as a process of a trace: what each node does in each superstep, in modelled time.
+// Traces of the modelled torus: its packets as CSV (docs/packets.md), and what each node does in each superstep, in
+// modelled time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "host/base/encoding.hpp"
 #include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
-#include "host/torus/packet_record.hpp"
-#include "host/torus/superstep.hpp"
+#include "host/torus/history.hpp"
 #include "host/torus/torus_result.hpp"
 #include "kernels/shared/torus.h"
 
 namespace raya {
+
+/// "primary", "reflected", "refracted", "shadow" or "return"; std::logic_error for another kind.
+const char* packet_kind_name(std::uint32_t kind);
+
+/// Takes records one after another, as a PacketSink is given them. Keeps the compressed text and the rays' numbers,
+/// which is most of it: up to 48 bytes for each ray and shadow ray that was sent or whose child was.
+class PacketTrace {
+  public:
+    PacketTrace();
+
+    /// One row. std::logic_error for a head that no packet has.
+    void add(const PacketRecord& record);
+
+    /// The whole file; the last that may be asked of the trace.
+    std::string finish();
+
+    std::uint64_t rows() const { return rows_; }
+
+  private:
+    GzipText file_;
+    std::string text_;  // rows that are not compressed yet
+    RayNumbers numbers_;
+    std::uint64_t rows_ = 0;
+};
 
 /// Takes what happens in a render, by its sinks, and keeps 16 bytes for each node and superstep and a sample of at most
 /// kMostPackets packets, each packet that it is told of with the same chance.

@@ -1,11 +1,10 @@
-#include "host/torus/windows.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "host/scene/scene.hpp"
+#include "host/torus/torus_plan.hpp"
 
 namespace raya {
 namespace {

@@ -9,12 +9,9 @@
 #include <cstdlib>
 #include <map>
 
-#include "host/base/json.hpp"
 #include "host/base/module.hpp"
-#include "host/base/read_file.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/tune/values_json.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -22,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kKind = "raya bench --tune";
+constexpr const char* kKind = "raya tune";
 constexpr std::uint64_t kVersion = 2;                                        // of the file's form
 constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // by RAYA_ACCEL_*
 
@@ -109,6 +106,19 @@ std::optional<fs::path> folder_in(const char* variable) {
 
 }  // namespace
 
+Json to_json(const TunedValues& values) {
+    Json json = Json::object();
+    for (const auto& [name, value] : kTunedNames) json[name] = values.*value;
+    return json;
+}
+
+TunedValues values_of(const Json& json) {
+    TunedValues values;
+    for (const auto& [name, value] : kTunedNames)
+        values.*value = static_cast<std::uint32_t>(json.at(name).whole(UINT32_MAX));
+    return values;
+}
+
 std::optional<fs::path> tuned_folder() {
     if (const auto cache = folder_in("XDG_CACHE_HOME")) return *cache / "raya";
     if (const auto home = folder_in("HOME")) return *home / ".cache" / "raya";
@@ -173,7 +183,7 @@ TunedSource kept_choices(std::function<void(const std::string&)> warn) {
         try {
             if (first) at->second = read_kept(path, device);
         } catch (const UserError& error) {
-            warn(fmt::format("{}; the file is ignored, remedy: raya bench --tune writes it anew", error.what()));
+            warn(fmt::format("{}; the file is ignored, remedy: raya tune writes it anew", error.what()));
         }
         if (!at->second) return {};
         for (const TunedEntry& entry : at->second->entries)

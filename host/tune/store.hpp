@@ -6,9 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/cl/tuned.hpp"
 
 namespace raya {
+
+/// In files, and between processes.
+Json to_json(const TunedValues& values);
+
+/// JsonError where a value is missing or no whole number of 32 bits.
+TunedValues values_of(const Json& json);
 
 /// What is kept of one kind of kernels.
 struct TunedEntry {

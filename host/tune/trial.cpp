@@ -1,12 +1,23 @@
 #include "host/tune/trial.hpp"
 
-#include <algorithm>
+#include <fmt/core.h>
 
-#include "host/base/json.hpp"
+#include <algorithm>
+#include <memory>
+
 #include "host/base/own_process.hpp"
-#include "host/cl/driver_call.hpp"
+#include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/tune/values_json.hpp"
+#include "host/image/image.hpp"
+#include "host/report/render_report.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
+#include "host/scene/generate.hpp"
+#include "host/scene/nff.hpp"
+#include "host/torus/torus_plan.hpp"
+#include "host/torus/torus_renderer.hpp"
+#include "host/tune/search.hpp"
+#include "host/tune/store.hpp"
 
 namespace raya {
 namespace {
@@ -14,66 +25,144 @@ namespace {
 constexpr std::size_t kLeastSamples = 2;  // before a candidate is given up
 constexpr double kFarSlower = 1.25;
 
-// Of what lasts less than 20 ms the mean of as many as last that long: clock and launch would count in.
-double sample_of(const TrialRender& render) {
-    constexpr double kLeastSeconds = 0.02;
-    double sum = 0;
-    int images = 0;
-    for (; sum < kLeastSeconds; ++images) sum += render.image_s();
-    return sum / images;
+// The rows of a table: the variants there are.
+struct Variant {
+    const char* name;
+    AccelKind accel;
+    std::uint32_t side;  // of the picture, pixels
+};
+constexpr Variant kVariants[] = {{"none", AccelKind::kNone, 512},
+                                 {"grid", AccelKind::kGrid, 256},
+                                 {"bvh", AccelKind::kBvh, 256},
+                                 {"torus", AccelKind::kNone, 256}};
+
+const Variant& variant_named(const std::string& name) {
+    for (const Variant& variant : kVariants)
+        if (name == variant.name) return variant;
+    throw UserError(fmt::format("--variants {}: must be none, grid, bvh or torus", name));
+}
+
+constexpr std::uint32_t kBounces = 8;
+
+struct Picture {
+    Scene scene;
+    ImageSize size;
+};
+
+Scene scene_of(const TrialRenders& render, const Variant& variant) {
+    constexpr const char* kSpheres = "scenes/spheres.nff";
+    constexpr int kLevel = 4;
+    std::vector<NffRemark> remarks;  // which the first process has told
+    if (!render.scene.empty()) return read_nff(render.scene, render.strict ? nullptr : &remarks);
+    if (variant.accel != AccelKind::kNone) return generate_balls(kLevel);
+    return parse_nff(embedded_files().at(kSpheres), kSpheres);
+}
+
+Picture picture_of(const TrialOrder& order) {
+    const Variant& variant = variant_named(order.workload.variant);
+    const ImageSize& size = order.render.size;
+    return {scene_of(order.render, variant), size.width ? size : ImageSize{variant.side, variant.side}};
+}
+
+RingSettings ring_settings(const TrialOrder& order, const ImageSize& size, const KernelChoice& kernels) {
+    RingSettings s;
+    s.machine = machine_named("grande");
+    const std::uint32_t pes = std::min(order.render.pes, size.width * size.height);
+    s.mapping = make_mapping(cyclic_mapping(16 % size.width, Fold::kCyclic), size, pes);
+    s.bounces = kBounces;
+    s.format = order.workload.format;
+    s.accel.kind = variant_named(order.workload.variant).accel;
+    s.kernels = kernels;
+    return s;
+}
+
+TorusSettings torus_settings(const TrialOrder& order, const ImageSize& size, const KernelChoice& kernels) {
+    TorusSettings s = usual_torus(size);
+    s.bounces = kBounces;
+    s.format = order.workload.format;
+    s.kernels = kernels;
+    return s;
+}
+
+const EventCounts& events_of(const RingResult& result) { return result.all.events; }
+const EventCounts& events_of(const TorusResult& result) { return result.events; }
+
+/// Of a renderer that has rendered once, so that its kernels are built: how to render once more, and what that takes
+/// from packed scene to image.
+using NextImage = std::function<double()>;
+
+template <class Renderer>
+NextImage prepare(int lines, std::size_t number, std::shared_ptr<Renderer> renderer) {
+    send_line(lines, {{"built", number}});
+    const auto first = renderer->render();
+    const std::string check = fmt::format("{}, {} rays", pixel_hash(first.image), ray_count(events_of(first)));
+    send_line(lines, {{"check", check}, {"build_s", first.build_s}});
+    return [renderer] { return renderer->render().render_s; };
 }
 
 double least(const std::vector<double>& seconds) { return *std::min_element(seconds.begin(), seconds.end()); }
 
-std::vector<std::vector<double>> samples_of(const std::vector<TrialRender>& renders, const TrialOrder& order) {
+std::vector<std::vector<double>> samples_of(const std::vector<NextImage>& renders, const TrialOrder& order) {
     std::vector<std::vector<double>> all(renders.size());
     for (std::uint32_t i = 0; i < order.samples; ++i) {
-        for (std::size_t n = 0; n < renders.size(); ++n) all[n].push_back(sample_of(renders[n]));
+        for (std::size_t n = 0; n < renders.size(); ++n) all[n].push_back(mean_seconds(renders[n]));
         const bool enough = order.stop_early && all.front().size() >= kLeastSamples;
         if (enough && least(all.back()) > kFarSlower * least(all.front())) break;
     }
     return all;
 }
 
-void run(int lines, const std::string& device, const TrialOrder& order, const WorkloadPicture& picture,
-         const KernelSources& sources) {
-    Session session(choose_device(device));
-    KernelChoice kernels;
-    kernels.sources = sources;
-    std::vector<TrialRender> renders;
-    for (const TunedValues& values : order.candidates) {
-        const auto built = [&] { send_line(lines, Json{{"built", renders.size()}}.dump()); };
-        renders.push_back(prepare_render(session, order.workload, picture, with_values(kernels, values), built));
-        const TrialRender& made = renders.back();
-        send_line(lines, Json{{"check", made.check}, {"build_s", made.build_s}}.dump());
-    }
-    Json all = Json::list();
-    for (const std::vector<double>& samples : samples_of(renders, order)) all.push_back(samples);
-    send_line(lines, Json{{"samples", all}}.dump());
+TrialOrder order_of(const Json& json) {
+    const auto number = [](const Json& whole) { return static_cast<std::uint32_t>(whole.whole(UINT32_MAX)); };
+    const std::vector<Json>& size = json.at("size").elements();
+    TrialOrder order{.render = {.device = json.at("device").text(),
+                                .scene = json.at("scene").text(),
+                                .kernel_dir = json.at("kernel_dir").text(),
+                                .strict = json.at("strict").whole(1) == 1,
+                                .size = {number(size.at(0)), number(size.at(1))},
+                                .pes = number(json.at("pes"))},
+                     .workload = {json.at("variant").text(), parse_format(json.at("format").text())},
+                     .candidates = {},
+                     .samples = number(json.at("samples")),
+                     .stop_early = json.at("stop_early").whole(1) == 1};
+    for (const Json& values : json.at("candidates").elements()) order.candidates.push_back(values_of(values));
+    return order;
 }
 
 }  // namespace
 
-std::string TrialOrder::text() const {
-    Json all = Json::list();
-    for (const TunedValues& values : candidates) all.push_back(to_json(values));
-    return Json{{"way", workload.way},
-                {"format", format_name(workload.format)},
-                {"samples", samples},
-                {"stop_early", stop_early ? 1 : 0},
-                {"candidates", all}}
-        .dump();
+TunedFor Workload::what() const {
+    const Variant& named = variant_named(variant);
+    return {.torus = variant == "torus", .accel = static_cast<std::uint32_t>(named.accel), .fp32 = format.is_fp32()};
 }
 
-TrialOrder TrialOrder::of(const std::string& text) {
-    return read_json(text, {"the order of a trial"}, [](const Json& json) {
-        TrialOrder order{.workload = {json.at("way").text(), parse_format(json.at("format").text())},
-                         .candidates = {},
-                         .samples = static_cast<std::uint32_t>(json.at("samples").whole(1000)),
-                         .stop_early = json.at("stop_early").whole(1) == 1};
-        for (const Json& values : json.at("candidates").elements()) order.candidates.push_back(values_of(values));
-        return order;
-    });
+std::string Workload::name() const {
+    return (variant == "torus" ? "torus " : "ring " + variant + " ") + format_name(format);
+}
+
+std::vector<Workload> usual_workloads() {
+    return {{"none", parse_format("fp32")},
+            {"none", parse_format("spa22")},
+            {"grid", parse_format("fp32")},
+            {"bvh", parse_format("fp32")},
+            {"torus", parse_format("fp32")}};
+}
+
+Json to_json(const TrialOrder& order) {
+    Json candidates = Json::list();
+    for (const TunedValues& values : order.candidates) candidates.push_back(to_json(values));
+    const TrialRenders& render = order.render;
+    return {{"device", render.device},
+            {"scene", render.scene},
+            {"kernel_dir", render.kernel_dir},
+            {"strict", render.strict ? 1 : 0},
+            {"size", std::array{render.size.width, render.size.height}},
+            {"pes", render.pes},
+            {"variant", order.workload.variant},
+            {"format", format_name(order.workload.format)},
+            {"candidates", candidates},
+            {"samples", order.samples},
+            {"stop_early", order.stop_early ? 1 : 0}};
 }
 
 double median_ratio(const std::vector<double>& of, const std::vector<double>& over) {
@@ -99,20 +188,32 @@ bool wins_surely(const Trial& trial) {
     return lost <= of.size() / 9;
 }
 
-void run_trial(int lines, const std::string& device, const TrialOrder& order, const Scene* given, const ImageSize& size,
-               std::uint32_t pes, const KernelSources& sources) {
-    leave_driver_crashes();  // the supervisor tells of them
-    keep_lines_to_oneself(lines);
-    const auto stop = [&](const std::exception& error, const char* kind) {
-        send_line(lines, Json{{"error", error.what()}, {"kind", kind}}.dump());
-    };
-    try {
-        run(lines, device, order, picture_of(order.workload, given, size, pes), sources);
-    } catch (const UserError& error) {
-        stop(error, "user");
-    } catch (const std::exception& error) {
-        stop(error, "device");
+double mean_seconds(const std::function<double()>& seconds) {
+    constexpr double kLeastSeconds = 0.02;
+    double sum = 0;
+    int calls = 0;
+    for (; sum < kLeastSeconds; ++calls) sum += seconds();
+    return sum / calls;
+}
+
+void run_trial(int lines, const Json& json) {
+    const TrialOrder order = order_of(json);
+    const Picture picture = picture_of(order);
+    Session session(choose_device(order.render.device));
+    std::vector<NextImage> renders;
+    for (const TunedValues& values : order.candidates) {
+        const KernelChoice kernels = with_values({.sources = {.folder = order.render.kernel_dir}}, values);
+        const std::size_t number = renders.size();
+        if (order.workload.what().torus)
+            renders.push_back(prepare(
+                lines, number,
+                std::make_shared<TorusRenderer>(session, picture.scene, torus_settings(order, picture.size, kernels))));
+        else
+            renders.push_back(prepare(
+                lines, number,
+                std::make_shared<RingRenderer>(session, picture.scene, ring_settings(order, picture.size, kernels))));
     }
+    send_line(lines, {{"samples", samples_of(renders, order)}});
 }
 
 }  // namespace raya

@@ -1,26 +1,51 @@
 // A trial: a few candidates that are rendered side by side in a process of their own, and what came of it.
 #pragma once
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "host/tune/space.hpp"
-#include "host/tune/workload.hpp"
+#include "host/base/json.hpp"
+#include "host/cl/tuned.hpp"
+#include "host/model/mapping_rule.hpp"
+#include "host/model/number_format.hpp"
 
 namespace raya {
 
-/// What the process is to do, as it reads it from its command line.
+/// A variant of rendering (none, grid, bvh: the ring machine with that accelerator; torus: 4 x 4 x 4 nodes) in a
+/// format.
+struct Workload {
+    std::string variant;
+    NumberFormat format{};
+
+    TunedFor what() const;     // UserError for a variant that there is not
+    std::string name() const;  // "ring none fp32", "torus fp32"
+};
+
+/// What is tuned where nothing else is asked for: the ring without accelerator in fp32 and e6m15, with either
+/// accelerator in fp32, and the torus in fp32.
+std::vector<Workload> usual_workloads();
+
+/// What a workload renders, and on which device: `scene`, a file, where a user brings one; else 30 spheres and a plane
+/// for variants that test all objects, and SPD's balls of 7,381 spheres for those that do not. No size: 512 pixels a
+/// side, with an accelerator and on the torus 256.
+struct TrialRenders {
+    std::string device, scene, kernel_dir;  // see choose_device(); empty: own scene, own kernels
+    bool strict = false;                    // of the scene
+    ImageSize size{};
+    std::uint32_t pes = 256;  // of the ring
+};
+
+/// What the process is to do.
 struct TrialOrder {
+    TrialRenders render;
     Workload workload;
     std::vector<TunedValues> candidates;  // the best so far, and what is held against it
     std::uint32_t samples = 5;            // of each, in turn
     bool stop_early = true;               // once the last one is far slower than the first
-
-    std::string text() const;
-    static TrialOrder of(const std::string& text);  // UserError
 };
+Json to_json(const TrialOrder& order);
 
-/// How it ended. The names are those of the T4 format (t4_report.hpp).
+/// How it ended. The names are those of the T4 format (t4_text() in tune.hpp).
 enum class Fate {
     kCorrect,
     kCompile,      // a driver did not build the kernels, or ended the program while it did
@@ -53,14 +78,19 @@ bool wins_surely(const Trial& trial);
 /// The median ratio of two candidates' samples alone, for figures that are told.
 double median_ratio(const std::vector<double>& of, const std::vector<double>& over);
 
-/// Runs the order in this process and writes what comes of it to the file `lines`, a JSON object a line; what goes
-/// wrong becomes a line:
+/// Mean seconds of one call, of as many as take 20 ms together: what lasts less, clock and launch would count in.
+double mean_seconds(const std::function<double()>& seconds);
+
+/// The task of a trial's process (host/base/own_process.hpp), and what it does: writes to the file `lines`, a JSON
+/// object a line
 ///
 ///     {"built": N}                                       candidate N can render
 ///     {"check": TEXT, "build_s": S}                      and has rendered once
 ///     {"samples": [[S, ...], ...]}                       of each candidate; that was all
-///     {"error": TEXT, "kind": "user" or "device"}        nothing more comes
-void run_trial(int lines, const std::string& device, const TrialOrder& order, const Scene* given, const ImageSize& size,
-               std::uint32_t pes, const KernelSources& sources);
+///     {"error": TEXT, "kind": "user" or "device" or "internal"}      nothing more comes
+///
+/// but for the last: what goes wrong is thrown.
+inline constexpr const char* kTrialTask = "tune";
+void run_trial(int lines, const Json& order);
 
 }  // namespace raya

@@ -7,22 +7,19 @@
 #include <vector>
 
 #include "host/tune/search.hpp"
-#include "host/tune/supervisor.hpp"
+#include "host/tune/trial.hpp"
 
 namespace raya {
 
 struct TuneSettings {
-    std::vector<std::string> arguments;  // of a trial's process, see supervise_trial()
-    double seconds = 60;                 // of the search
-    double limit_s = 20;                 // of a candidate, with its build
-    bool exhaustive = false;             // every candidate is tried as well
+    TrialRenders render;      // of all trials
+    double seconds = 60;      // of the search
+    double limit_s = 20;      // of a candidate, with its build
+    bool exhaustive = false;  // every candidate is tried as well
 };
 
-struct TuneSink {
-    /// A trial has been running for so many seconds; `values` are the candidate's.
-    std::function<void(const TunedValues& values, double seconds)> running{};
-    std::function<void(const Trial&)> finished{};
-};
+/// Told about five times a second: a trial has been running for so many seconds; `values` are the candidate's.
+using TrialWatch = std::function<void(const TunedValues& values, double seconds)>;
 
 /// What came of a workload.
 struct Tuning {
@@ -44,6 +41,13 @@ struct Tuning {
 
 /// A candidate counts as better where it wins by both figures of ratio_of(); the best in the end must win surely
 /// against the defaults (wins_surely), or the defaults are the best. DeviceError where the defaults themselves fail.
-Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettings& settings, const TuneSink& sink);
+Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettings& settings,
+            const TrialWatch& running);
+
+/// Everything that was tried, in the results format of the T4 schema, version 1.0.0, which Kernel Tuner writes and
+/// tools about it read (KernelTuner/kernel_tuner, kernel_tuner/schema/T4/1.0.0/results-schema.json): a result for each
+/// candidate that has ended, its values and its workload as "configuration", times in milliseconds, how it ended as
+/// "invalidity", and the measurements "time", the least of an image, and "ratio", to the best so far.
+std::string t4_text(const DeviceInfo& device, const std::vector<Tuning>& tunings);
 
 }  // namespace raya

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/verify/words.hpp"
+#include "host/verify/verdict.hpp"
 
 namespace raya {
 

@@ -1,5 +1,5 @@
-// Rays against objects: the kernels of kernels/checks/hits.cl, hits that are known, and the walk through the grid
-// against testing all objects.
+// Rays against objects: hits that can be worked out by hand, the kernels of kernels/checks/hits.cl, and the walk
+// through the grid against testing all objects.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,11 +11,32 @@
 #include "host/cl/kernel_source.hpp"
 #include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
 #include "host/verify/check_runner.hpp"
-#include "host/verify/known_hits.hpp"
 #include "host/verify/verdict.hpp"
 
 namespace raya {
+
+inline constexpr std::uint32_t kNothing = 0xffffffffu;  // RAYA_NO_OBJECT of the kernels
+inline constexpr float kUsualLimit = 4096;              // of rays: beyond all of the scenes
+
+struct KnownHit {
+    const char* what;
+    std::array<float, 3> origin, direction;
+    std::uint32_t object;  // number in the job, kNothing
+    float t;               // where the ray hits; of a miss without a meaning
+    float limit = kUsualLimit;
+};
+
+struct KnownScene {
+    std::string name;
+    Scene scene;
+    std::vector<KnownHit> hits;
+};
+
+/// Spheres, planes, polygons and patches, cones: hit from outside and from inside, touched, missed, at equal distances.
+/// Exact in any format with 12 fraction bits or more.
+std::vector<KnownScene> known_scenes();
 
 /// Rays for kernels.
 struct Rays {

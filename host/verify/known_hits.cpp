@@ -1,4 +1,4 @@
-#include "host/verify/known_hits.hpp"
+#include "host/verify/hits.hpp"
 
 namespace raya {
 namespace {

@@ -1,24 +1,92 @@
 
-#include "host/verify/machines.hpp"
-
+// What the machines rest on beside numbers, by kernels/checks/machine.cl: whole-number arithmetic, local memory,
+// barriers and atomics. All of it is exact: the host computes the same with the same headers.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "host/cl/kernels.hpp"
+#include "host/model/mapping_rule.hpp"
 #include "host/model/unit_text.hpp"
 #include "host/ring/mapping.hpp"
+#include "host/scene/split_mix.hpp"
 #include "host/torus/topology.hpp"
-#include "host/verify/patterns.hpp"
+#include "host/verify/check_runner.hpp"
 #include "host/verify/transfers.hpp"
 #include "host/verify/verify.hpp"
+#include "kernels/shared/mapping.h"
+#include "kernels/shared/neighbours.h"
 
 namespace raya {
 namespace {
 
 using Words = std::vector<std::uint32_t>;
+
+// Cases are drawn with a fixed seed, the ends of the ranges among them.
+std::uint32_t below(SplitMix& random, std::uint32_t end) { return static_cast<std::uint32_t>(random.next() % end); }
+
+std::uint32_t divisor_of(SplitMix& random, std::uint32_t side) {
+    std::uint32_t divisor = 1 + below(random, side);
+    while (side % divisor) --divisor;
+    return divisor;
+}
+
+// A side of an image: small, any, the largest.
+std::uint32_t side(SplitMix& random) {
+    const std::uint32_t kinds[] = {1 + below(random, 40), 1 + below(random, kLargestSide), kLargestSide};
+    return kinds[below(random, 3)];
+}
+
+raya_mapping drawn_mapping(SplitMix& random, std::uint32_t kind) {
+    raya_mapping m{side(random), side(random), 1, 0, kind};
+    const std::uint32_t pixels = m.width * m.height;
+    const std::uint32_t pes[] = {1 + below(random, m.width), 1 + below(random, pixels), m.width, pixels};
+    m.pes = pes[below(random, 4)];
+    if (raya_has_slots(m)) m.parameter = below(random, m.width);
+    if (kind == RAYA_TILES) m.parameter = raya_pair(divisor_of(random, m.width), divisor_of(random, m.height));
+    if (kind == RAYA_RANDOM) m.parameter = static_cast<std::uint32_t>(random.next());
+    if (kind == RAYA_GRID) {
+        const std::uint32_t down = 1 + below(random, m.height), across = 1 + below(random, m.width);
+        m.parameter = raya_pair(down, across);
+        m.pes = down * across;
+    }
+    return m;
+}
+
+// `count` legal mappings of a kind (RAYA_FOLD_CYCLIC..RAYA_RANDOM), up to the largest images and arrays, and a pixel
+// of each.
+std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std::uint32_t kind, std::size_t count) {
+    constexpr std::uint64_t kSeed = 1993;
+    SplitMix random(kSeed + kind);
+    std::vector<raya_mapping> mappings;
+    std::vector<raya_pixel> pixels;
+    for (std::size_t i = 0; i < count; ++i) {
+        const raya_mapping m = drawn_mapping(random, kind);
+        mappings.push_back(m);
+        pixels.push_back(
+            {i % 8 ? below(random, m.height) : m.height - 1, i % 4 ? below(random, m.width) : m.width - 1});
+    }
+    return {mappings, pixels};
+}
+
+// `count` toruses of either kind, and two nodes of each: [case][2].
+std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::size_t count) {
+    constexpr std::uint64_t kSeed = 805;
+    SplitMix random(kSeed);
+    std::vector<raya_torus> toruses;
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto any = [&] { return 1 + below(random, i % 5 ? 7 : 40); };
+        const raya_torus torus = make_torus({any(), any(), any()}, i % 2 ? Links::kTorus2d : Links::kTorus3d);
+        toruses.push_back(torus);
+        for (int k = 0; k < 2; ++k) nodes.push_back(below(random, raya_nodes(torus)));
+    }
+    return {toruses, nodes};
+}
 
 // Compares cases of `stride` words each; `what` tells a case, `names` its words.
 template <class What>
@@ -49,12 +117,13 @@ void add_owner(Words& to, const raya_mapping& m, const raya_pixel& pixel) {
     to.insert(to.end(), {owner, raya_share_size(share), number, back.row, back.column, sides});
 }
 
-}  // namespace
-
-CheckRunner machine_runner(Session& session, const KernelSources& sources, std::uint32_t group_size) {
+// The program; `group_size`: L of its kernel turn_round, 1..1024.
+CheckRunner machine_runner(Session& session, const KernelSources& sources, std::uint32_t group_size = 1) {
     return {session, Kernels(session, {.group_size = group_size}, sources).program("checks/machine.cl")};
 }
 
+// Owners of pixels, their numbers and neighbours, in so many cases of a kind of mapping
+// (RAYA_FOLD_CYCLIC..RAYA_RANDOM).
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;
@@ -73,6 +142,7 @@ Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases)
                          fmt::format("{} pixels", cases));
 }
 
+// The first links of so many ways through toruses of either kind, and the ends of links.
 Verdict check_ways(CheckRunner& runner, std::size_t cases) {
     const auto [toruses, nodes] = torus_cases(cases);
     Words expected;
@@ -96,6 +166,7 @@ Verdict check_ways(CheckRunner& runner, std::size_t cases) {
                          fmt::format("{} pairs of nodes", cases));
 }
 
+// Words that work-groups turn round in local memory, several times, and numbers that their work-items draw.
 Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
     constexpr std::uint32_t kGroups = 64, kTimes = 9;
     const std::uint32_t words = 2000;  // 2 x 2000 words are half of the 32 KB that OpenCL promises
@@ -119,8 +190,6 @@ Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
 
 // What the machines rest on beside numbers: whole-number arithmetic in kernels, local memory and barriers, and copies
 // between buffers. All of it is exact.
-namespace {
-
 std::vector<std::string> compiler_at_fault() {
     return {
         "the compiler is wrong about whole numbers or barriers, not about fp32: look for a switch of the driver that\n"

@@ -9,8 +9,8 @@
 
 #include "host/embedded.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/verify/words.hpp"
+#include "host/scene/nff.hpp"
+#include "host/verify/verdict.hpp"
 
 namespace raya {
 namespace {

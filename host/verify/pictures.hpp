@@ -12,7 +12,7 @@
 #include "host/model/machine.hpp"
 #include "host/model/number_format.hpp"
 #include "host/ring/antialias.hpp"
-#include "host/ring/ring_settings.hpp"
+#include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"
 #include "host/verify/verdict.hpp"
 

@@ -9,10 +9,80 @@
 
 #include "host/base/json.hpp"
 #include "host/base/own_process.hpp"
+#include "host/cl/driver.hpp"
 #include "host/error.hpp"
 
 namespace raya {
 namespace {
+
+// In the process of the checks.
+
+Json settings_json(const VerifySettings& s, const std::string& wanted, std::size_t index) {
+    return {{"device", wanted},
+            {"index", index},
+            {"depth", depth_name(s.depth)},
+            {"kernel_dir", s.sources.folder.string()},
+            {"only", s.only},
+            {"lanes", s.lanes},
+            {"done", s.done}};
+}
+
+VerifySettings settings_of(const Json& json) {
+    const std::string& depth = json.at("depth").text();
+    const auto is = [&](Depth one) { return depth == depth_name(one); };
+    return {.depth = is(Depth::kFull)    ? Depth::kFull
+                     : is(Depth::kBrief) ? Depth::kBrief
+                                         : Depth::kQuick,
+            .sources = {.folder = json.at("kernel_dir").text()},
+            .only = json.at("only").text(),
+            .lanes = static_cast<std::uint32_t>(json.at("lanes").whole(UINT32_MAX)),
+            .done = json.at("done").whole()};
+}
+
+struct NamedDevices {
+    std::vector<cl::Device> devices;
+    std::vector<std::string> left_out;  // lines about those that cannot be used
+};
+
+// "all": the usable ones, else one as choose_device() has it. DeviceError as there.
+NamedDevices named_devices(const std::string& wanted) {
+    if (wanted != "all") return {{choose_device(wanted)}, {}};
+    NamedDevices named;
+    for (const cl::Device& device : all_devices()) {
+        const DeviceInfo info = device_info(device);
+        if (info.available && info.compiler_available)
+            named.devices.push_back(device);
+        else
+            named.left_out.push_back(
+                fmt::format("{} ({}): not available, or without a compiler; left out", info.name, info.platform));
+    }
+    if (named.devices.empty()) choose_device("");  // throws, with the remedy
+    return named;
+}
+
+// Names from which somebody sees what --only takes: the first of each layer.
+std::string some_names(const std::vector<std::string>& names) {
+    std::string text, layer;
+    for (const std::string& name : names) {
+        const std::string own = name.substr(0, name.find(' '));
+        if (own != layer) text += "\n  " + name;
+        layer = own;
+    }
+    return text;
+}
+
+void refuse_no_checks(const cl::Device& device, const VerifySettings& settings) {
+    if (!check_names(device, settings).empty()) return;
+    VerifySettings any = settings;
+    any.only.clear();
+    throw UserError(fmt::format(
+        "--only \"{}\": no check of {} has this in \"LAYER NAME\"; the layers are number, geometry, machine and image, "
+        "checks are{}{}",
+        settings.only, device_info(device).name, some_names(check_names(device, any)),
+        settings.depth == Depth::kFull ? "" : "\n  ... and --full has more"));
+}
+
+// In the process that starts it.
 
 using Clock = std::chrono::steady_clock;
 
@@ -35,12 +105,10 @@ class Supervision {
     Supervision(const VerifySettings& settings, const SupervisorSink& sink) : settings_(settings), sink_(sink) {}
 
     /// Runs the checks that are left. Whether another process may end more of them.
-    bool run_rest(std::vector<std::string> arguments, std::size_t index) {
-        arguments.insert(arguments.end(), {"--worker-device", std::to_string(index), "--worker-done"});
-        arguments.push_back(std::to_string(done_));
-        const std::size_t before = done_;
+    bool run_rest(const std::string& wanted, std::size_t index) {
+        const std::size_t before = settings_.done;
         ended_ = false;
-        OwnProcess process(arguments);
+        OwnProcess process(kVerifyTask, settings_json(settings_, wanted, index));
         for (std::string line;;) {
             const OwnProcess::Read read = process.read(line, std::chrono::seconds(1));
             if (read == OwnProcess::Read::kEnd) break;
@@ -52,7 +120,7 @@ class Supervision {
         const int status = process.wait();
         if (ended_ && status == 0) return false;
         finish(broken(status));
-        return !ended_ && done_ > before;
+        return !ended_ && settings_.done > before;
     }
 
     DeviceChecks take_checks() { return std::move(all_); }
@@ -96,7 +164,7 @@ class Supervision {
         if (!settings_.sources.folder.empty())
             check.verdict.fault.remedies = {
                 "raya verify without --kernel-dir: does it pass? then these kernels are wrong"};
-        done_ += running_.has_value();
+        settings_.done += running_.has_value();
         running_.reset();
         all_.seconds += check.seconds;
         all_.checks.push_back(check);
@@ -124,10 +192,10 @@ class Supervision {
         return check;
     }
 
-    const VerifySettings& settings_;
+    VerifySettings settings_;  // `done`: the checks that have ended
     const SupervisorSink& sink_;
     DeviceChecks all_;
-    std::size_t devices_ = 0, done_ = 0;
+    std::size_t devices_ = 0;
     std::optional<Running> running_;
     Clock::time_point start_;
     bool ended_ = false;  // the process has told the end
@@ -135,12 +203,38 @@ class Supervision {
 
 }  // namespace
 
-DeviceChecks supervise(const std::vector<std::string>& arguments, std::size_t index, const VerifySettings& settings,
+DeviceChecks supervise(const std::string& wanted, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices) {
     Supervision supervision(settings, sink);
-    while (supervision.run_rest(arguments, index)) continue;
+    while (supervision.run_rest(wanted, index)) continue;
     devices = supervision.devices();
     return supervision.take_checks();
+}
+
+void run_checks(int lines, const Json& order) {
+    const VerifySettings settings = settings_of(order);
+    const std::size_t index = order.at("index").whole();
+    const NamedDevices named = named_devices(order.at("device").text());
+    if (index == 0 && settings.done == 0)
+        for (const cl::Device& device : named.devices) refuse_no_checks(device, settings);
+    const cl::Device& device = named.devices.at(index);
+    const DeviceInfo info = device_info(device);
+    send_line(lines, {{"devices", named.devices.size()},
+                      {"left_out", named.left_out},
+                      {"name", info.name},
+                      {"platform", info.platform},
+                      {"version", info.version},
+                      {"driver", info.driver}});
+    verify(device, settings,
+           {.started =
+                [&](const std::string& layer, const std::string& name) {
+                    send_line(lines, {{"started", {{"layer", layer}, {"name", name}}}});
+                },
+            .finished =
+                [&](const Check& check) {
+                    send_line(lines, {{"check", to_json(check)}});
+                }});
+    send_line(lines, {{"ended", true}});
 }
 
 }  // namespace raya

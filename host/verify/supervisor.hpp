@@ -1,13 +1,31 @@
-// Runs a device's checks in a process of its own (worker.hpp), and once more from where it ended if a driver ends it.
+// Runs a device's checks in a process of its own, since a driver that crashes takes its process with it, and once more
+// from where it ended if a driver ends it. What that process writes, a JSON object a line:
+//
+//     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
+//     {"started": {"layer": LAYER, "name": NAME}}    a check begins
+//     {"check": {...}}      and has ended: to_json() of check.hpp
+//     {"ended": true}       that was all
+//     {"error": TEXT, "kind": "user" or "device" or "internal"}      nothing more comes
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "host/verify/check.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {
+
+/// The devices that a text names: "all" the usable ones, else one as choose_device() has it. DeviceError as there.
+struct NamedDevices {
+    std::vector<cl::Device> devices;
+    std::vector<std::string> left_out;  // lines about those that cannot be used
+};
+NamedDevices named_devices(const std::string& wanted);
+
+/// Checks device number `index` of those that `wanted` names and writes the lines above to the file `lines`. What goes
+/// wrong becomes a line, not an exception.
+void run_worker(int lines, const std::string& wanted, std::size_t index, const VerifySettings& settings);
 
 /// What a device says of itself, and what came of its checks.
 struct DeviceChecks {
@@ -26,11 +44,15 @@ struct SupervisorSink {
     std::function<void(const Check&)> finished{};
 };
 
-/// Checks device number `index` of those that `arguments` name: "verify" and its options, without those that are the
-/// worker's. A process that ends before it has told the end is a check that failed, the one that ran; the checks after
-/// it follow in another process, as long as each ends at least one. `devices` becomes how many devices are named.
+/// Checks device number `index` of those that `wanted` names: "all" the usable ones, else one as choose_device() has
+/// it. A process that ends before it has told the end is a check that failed, the one that ran; the checks after it
+/// follow in another process, as long as each ends at least one. `devices` becomes how many devices are named.
 /// UserError, DeviceError as the process itself met them, and DeviceError if the driver ends it before any check.
-DeviceChecks supervise(const std::vector<std::string>& arguments, std::size_t index, const VerifySettings& settings,
+DeviceChecks supervise(const std::string& wanted, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices);
+
+/// The task of that process (host/base/own_process.hpp), and what it does: writes all lines but the last.
+inline constexpr const char* kVerifyTask = "verify";
+void run_checks(int lines, const Json& order);
 
 }  // namespace raya

@@ -7,11 +7,10 @@
 #include <numeric>
 #include <optional>
 
-#include "host/ring/bus.hpp"
-#include "host/ring/ring.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/torus/link_exchange.hpp"
 #include "host/torus/topology.hpp"
-#include "host/verify/words.hpp"
+#include "host/verify/verdict.hpp"
 
 namespace raya {
 namespace {

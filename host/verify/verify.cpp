@@ -1,8 +1,71 @@
 #include "host/verify/verify.hpp"
 
-namespace raya {
+#include <fmt/core.h>
 
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+
+#include "host/base/json.hpp"
+#include "host/cl/program.hpp"
+#include "host/error.hpp"
+
+namespace raya {
 namespace {
+
+bool says_any(const std::string& message, const std::vector<const char*>& words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return message.find(word) != std::string::npos; });
+}
+
+// What to try after a failure that was thrown, by what the message says; `by_device`: a DeviceError.
+std::vector<std::string> remedies_for(const std::string& message, bool by_device) {
+    const std::string newer = "a newer driver, or another OpenCL implementation for this device (raya devices)";
+    if (says_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
+                           "CL_OUT_OF_", "bad_alloc"}))
+        return {"memory is short: end other programs that use this device or this machine, and run verify again",
+                newer};
+    if (says_any(message, {"CL_DEVICE_NOT_AVAILABLE", "CL_CONTEXT_TERMINATED", "CL_COMMAND_TERMINATED",
+                           "CL_EXEC_STATUS_ERROR", "illegal read or write"}))
+        return {"the device was lost: does raya devices still list it? does the system's log (dmesg) tell why?",
+                "another program, or a limit on how long a kernel may run, may have ended it", newer};
+    if (says_any(message, {"building program", "CL_INVALID_BUILD_OPTIONS"})) {
+        std::vector<std::string> all = {"the build log above says what the compiler refuses: tell its makers"};
+        const std::vector<std::string> more = compiler_remedies();
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    if (by_device) return {"raya devices: is this the device that you mean?", newer};
+    return {"are checks of \"number\", \"geometry\" or \"machine\" wrong too? then those first",
+            "else this is an error in raya: tell its authors"};
+}
+
+Verdict verdict_of(const std::function<Verdict()>& body) {
+    const auto broken = [](const std::string& message, bool by_device) {
+        const std::size_t end = message.find('\n');
+        Fault fault;
+        if (end != std::string::npos) fault.where = message.substr(end + 1);
+        fault.remedies = remedies_for(message.substr(0, end), by_device);
+        return failed(message.substr(0, end), fault);
+    };
+    try {
+        return body();
+    } catch (const DeviceError& error) {
+        return broken(error.what(), true);
+    } catch (const std::exception& error) {
+        return broken(std::string("the check could not be done: ") + error.what(), false);
+    }
+}
+
+// "    label: text", the text's further lines below its first.
+std::string indented(const std::string& label, const std::string& text) {
+    constexpr int kLabel = 14;
+    if (text.empty()) return {};
+    std::string all, line, head = label;
+    for (std::istringstream in(text); std::getline(in, line); head.clear())
+        all += fmt::format("      {:<{}}{}\n", head, kLabel, line);
+    return all;
+}
 
 void visit_layers(Verification& verification) {
     verify_numbers(verification);
@@ -12,6 +75,73 @@ void visit_layers(Verification& verification) {
 }
 
 }  // namespace
+
+const char* outcome_name(Outcome outcome) {
+    return outcome == Outcome::kPass ? "PASS" : outcome == Outcome::kFail ? "FAIL" : "SKIP";
+}
+
+Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    Check check{layer, name, 0, verdict_of(body)};
+    check.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return check;
+}
+
+std::size_t count_of(const std::vector<Check>& checks, Outcome outcome) {
+    return static_cast<std::size_t>(
+        std::count_if(checks.begin(), checks.end(), [&](const Check& c) { return c.verdict.outcome == outcome; }));
+}
+
+std::string check_lines(const Check& c) {
+    std::string lines = fmt::format("{}  {:<9} {:<46} {:6.2f} s  {}\n", outcome_name(c.verdict.outcome), c.layer,
+                                    c.name, c.seconds, c.verdict.told);
+    if (c.verdict.outcome != Outcome::kFail) return lines;
+    const Fault& f = c.verdict.fault;
+    lines += indented("where", f.where) + indented("expected", f.expected) + indented("got", f.got) +
+             indented("build options", f.options);
+    for (const std::string& remedy : f.remedies) lines += indented(&remedy == &f.remedies.front() ? "try" : "", remedy);
+    return lines;
+}
+
+Json to_json(const Check& c) {
+    Json json = {{"layer", c.layer},
+                 {"name", c.name},
+                 {"status", outcome_name(c.verdict.outcome)},
+                 {"seconds", c.seconds},
+                 {"told", c.verdict.told}};
+    if (c.verdict.outcome != Outcome::kFail) return json;
+    const Fault& f = c.verdict.fault;
+    json["where"] = f.where;
+    json["expected"] = f.expected;
+    json["got"] = f.got;
+    json["build_options"] = f.options;
+    json["remedies"] = f.remedies;
+    return json;
+}
+
+std::vector<std::string> compiler_remedies() {
+    std::vector<std::string> all;
+    if (user_build_options().find("-cl-opt-disable") == std::string::npos)
+        all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: the compiler without its optimiser");
+    all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
+    return all;
+}
+
+Check check_of(const Json& json) {
+    const auto text = [&](const char* key) { return json.at(key).text(); };
+    const std::string status = text("status");
+    Check check{text("layer"), text("name"), json.at("seconds").number(), {Outcome::kPass, text("told"), {}}};
+    if (status == outcome_name(Outcome::kSkip)) check.verdict.outcome = Outcome::kSkip;
+    if (status != outcome_name(Outcome::kFail)) return check;
+    check.verdict.outcome = Outcome::kFail;
+    check.verdict.fault = {.where = text("where"),
+                           .expected = text("expected"),
+                           .got = text("got"),
+                           .options = text("build_options"),
+                           .remedies = json.at("remedies").texts()};
+    return check;
+}
 
 const char* depth_name(Depth depth) {
     switch (depth) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/model/number_format.hpp"
-#include "host/scene/polygon_plane.hpp"
+#include "host/scene/polygon.hpp"
 #include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/accel/random_walks.hpp"

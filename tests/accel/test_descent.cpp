@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/accel/tree_words.hpp"
+#include "host/accel/tree.hpp"
 #include "host/verify/hits.hpp"
 #include "tests/accel/hits_of_one.hpp"
 #include "tests/accel/partition_lists.hpp"

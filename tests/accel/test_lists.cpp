@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "host/accel/grid.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/accel/partition.hpp"
+#include "host/scene/packer.hpp"
 #include "tests/accel/partition_lists.hpp"
 
 namespace raya {

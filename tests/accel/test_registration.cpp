@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "host/accel/hit_regions.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/accel/partition_lists.hpp"
 #include "tests/paths.h"
 

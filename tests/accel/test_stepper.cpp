@@ -2,7 +2,7 @@
 // bit, up to where the ray leaves the box.
 #include <catch2/catch.hpp>
 
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 #include "tests/accel/random_walks.hpp"
 #include "tests/kernels/kernel_runner.hpp"
 #include "tests/kernels/probe.hpp"

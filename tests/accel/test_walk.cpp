@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 #include "tests/accel/random_walks.hpp"
 #include "tests/accel/reference_walk.hpp"
 #include "tests/kernels/kernel_runner.hpp"

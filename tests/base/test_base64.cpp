@@ -1,7 +1,7 @@
 // RFC 4648's own examples.
 #include <catch2/catch.hpp>
 
-#include "host/base/base64.hpp"
+#include "host/base/encoding.hpp"
 
 namespace raya {
 namespace {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "host/base/gzip.hpp"
+#include "host/base/encoding.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/base/gunzip.hpp"
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "host/base/read_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "tests/base/scratch_folder.hpp"
 
 namespace raya {

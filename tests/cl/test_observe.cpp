@@ -1,8 +1,8 @@
 // What a session tells an observer: builds, arguments of launches, and how the device's clock lies.
 #include <catch2/catch.hpp>
 
-#include "host/cl/clock_anchor.hpp"
 #include "host/cl/commands.hpp"
+#include "host/cl/measure.hpp"
 #include "host/scene/split_mix.hpp"
 
 namespace raya {

@@ -31,10 +31,14 @@ std::string changed(const ScratchFolder& folder, const std::string& name, double
 
 TEST_CASE("what a bench would pass over is refused", "[cli]") {
     const ScratchFolder outputs;
-    check_refused(outputs, small_bench({"--tolerance", "5"}), 2, {"--tolerance", "--compare FILE.json"});
-    check_refused(outputs, {"bench", "--ways", "torus", "--mapping", "rows"}, 2, {"--mapping with --ways torus"});
-    check_refused(outputs, {"bench", "--ways", "torus,torus", "--pes", "4"}, 2, {"--pes with --ways torus"});
-    check_refused(outputs, {"bench", "--ways", "none,grid", "--accel", "grid"}, 2, {"--accel with --ways"});
+    check_refused(outputs, small_bench({"--tolerance", "5"}), 2, {"--tolerance requires --compare"});
+    check_refused(outputs, {"bench", "--variants", "torus", "--mapping", "rows"}, 2,
+                  {"--mapping with --variants torus"});
+    check_refused(outputs, {"bench", "--variants", "torus,torus", "--pes", "4"}, 2, {"--pes with --variants torus"});
+    check_refused(outputs, {"bench", "--variants", "none,grid", "--accel", "grid"}, 2,
+                  {"--accel", "excludes", "--variants"});
+    check_refused(outputs, {"bench", "--antialias", "filter"}, 2, {"bench: no option --antialias"});
+    check_refused(outputs, {"bench", "--ways", "grid"}, 2, {"bench: no option --ways (did you mean --variants?)"});
     check_refused(outputs, {"bench", "--compare", "/dev/zero"}, 2, {"/dev/zero: cannot be read: not a regular file"});
 }
 
@@ -104,12 +108,13 @@ TEST_CASE("bench refuses baselines, reports and tolerances that cannot be", "[cl
                       {"--tolerance"});
 }
 
-TEST_CASE("bench --ways times whole renders with and without a grid and on the torus, the same image", "[cli][slow]") {
+TEST_CASE("bench --variants times whole renders with and without a grid and on the torus, the same image",
+          "[cli][slow]") {
     const ScratchFolder folder;
-    const std::string base = folder / "ways.json";
+    const std::string base = folder / "variants.json";
     const RunOutcome run =
-        run_raya({"bench", RAYA_SOURCE_DIR "/scenes/mirrors.nff", "--ways", "grid,torus,none", "--machine", "grande",
-                  "--size", "40x30", "--format", "fp32", "--lanes", "4", "--samples", "1", "--report", base});
+        run_raya({"bench", RAYA_SOURCE_DIR "/scenes/mirrors.nff", "--variants", "grid,torus,none", "--machine",
+                  "grande", "--size", "40x30", "--format", "fp32", "--lanes", "4", "--samples", "1", "--report", base});
     INFO(run.told());
     REQUIRE(run.code == 0);
     const Document rows = json_of(base)["rows"];
@@ -125,13 +130,13 @@ TEST_CASE("bench --ways times whole renders with and without a grid and on the t
     }
     CHECK_THAT(rows[1]["array"].get<std::string>(), Catch::StartsWith("4x4x4 nodes"));
     const ScratchFolder empty;
-    check_refused(empty, {"bench", "--ways", "grid,octree"}, 2, {"--ways octree", "none, grid, bvh or torus"});
+    check_refused(empty, {"bench", "--variants", "grid,octree"}, 2, {"--variants octree", "none, grid, bvh or torus"});
 }
 
 TEST_CASE("bench --denormals times every row twice, and makes the same image where nothing is denormal", "[cli]") {
     const ScratchFolder outputs;
     const RunOutcome run =
-        run_raya({"bench", scene_file("planes"), "--ways", "none", "--size", "16", "--pes", "16", "--lanes", "4",
+        run_raya({"bench", scene_file("planes"), "--variants", "none", "--size", "16", "--pes", "16", "--lanes", "4",
                   "--format", "fp32", "--samples", "1", "--denormals", "--report", outputs / "x.json"});
     INFO(run.told());
     REQUIRE(run.code == 0);

@@ -13,7 +13,7 @@
 #include "host/cli/frame_options.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 

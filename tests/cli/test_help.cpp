@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "host/cli/help_text.hpp"
+#include "host/cli/command_text.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/whole_tree.hpp"
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "host/cli/help_text.hpp"
+#include "host/cli/command_text.hpp"
 
 namespace raya {
 namespace {

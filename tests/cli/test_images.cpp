@@ -6,8 +6,7 @@
 #include <array>
 
 #include "host/base/whole_file.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/scene/scaled_scene.hpp"

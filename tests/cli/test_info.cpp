@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "host/base/whole_file.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/thorough.hpp"

@@ -1,8 +1,8 @@
 // Manual pages and completions of a small command line, with texts that shells and man would take for their own.
 #include <catch2/catch.hpp>
 
+#include "host/cli/command_text.hpp"
 #include "host/cli/completion.hpp"
-#include "host/cli/man_page.hpp"
 
 namespace raya {
 namespace {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/cli/report_keys.hpp"
 #include "tests/document.hpp"

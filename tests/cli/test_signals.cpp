@@ -201,38 +201,5 @@ TEST_CASE("a signal ends a command whose driver does not answer", "[cli][signals
                  quick(1, kSignals));
 }
 
-/// A program that runs for a minute, whatever its arguments are, and notes its number.
-std::string sleeper(const Folders& folders, const std::string& note) {
-    const std::string path = folders.inputs / "sleeper";
-    std::ofstream(path) << "#!/bin/sh\necho $$ >" << note << ".new && mv " << note << ".new " << note
-                        << "\nexec sleep 60\n";
-    ::chmod(path.c_str(), 0755);
-    return path;
-}
-
-TEST_CASE("a signal ends the programs that a command has started", "[cli][signals]") {
-    const Folders folders;
-    const std::string note = folders.inputs / "process";
-    const Phase phase{"bench --ranks",
-                      {"bench", "--ranks", "1,2"},
-                      [&] { return fs::exists(note); },
-                      20,
-                      {.variables = {{"RAYA_MPIRUN", sleeper(folders, note)}}}};
-    for (const int signal : quick(1, kSignals)) {
-        fs::remove(note);
-        check_signal(folders, phase, signal);
-        const std::string process = file_contents(note);
-        const std::string folder = "/proc/" + process.substr(0, process.find('\n'));
-        const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-        const auto runs = [&] {
-            std::ifstream file(folder + "/cmdline");
-            return file.peek() != std::ifstream::traits_type::eof();  // empty: ended, and not waited for
-        };
-        while (runs() && std::chrono::steady_clock::now() < late)
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        CHECK_FALSE(runs());
-    }
-}
-
 }  // namespace
 }  // namespace raya

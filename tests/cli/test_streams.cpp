@@ -140,7 +140,7 @@ TEST_CASE("two files on stdout, stdin read twice, and what cannot be a stream ar
     }
     check_refused(outputs, {"bench", "--compare", "-"}, 2, {"stdin:1: not valid JSON"});
     check_refused(outputs, {"study", "fig7", scene, "-o", "-"}, 2, {"-o -: a study is many files"});
-    check_refused(outputs, {"bench", "-", "--tune"}, 2, {"bench --tune -: ", "name a file"});
+    check_refused(outputs, {"tune", "-"}, 2, {"tune -: ", "name a file"});
     check_refused(
         outputs,
         {"render", scene, "-o", outputs / "x.ppm", "--machine", "torus", "--packets", "-", "--replay", "simgrid"}, 2,

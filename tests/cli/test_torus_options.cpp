@@ -1,5 +1,5 @@
 // The torus's options: what the program refuses before it renders, and what its help says.
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "kernels/shared/traffic.h"
 #include "tests/cli/refusals.hpp"
 #include "tests/thorough.hpp"

@@ -45,6 +45,14 @@ TEST_CASE("a driver that crashes before any check is trouble with the device", "
                   {"looking for devices", "signal 11 (SIGSEGV)", "remedy"}, crash);
 }
 
+TEST_CASE("what no process of raya's own was given is refused", "[cli][verify]") {
+    const ScratchFolder outputs;
+    check_refused(outputs, {"--worker", "x"}, 2, {"--worker:1: not valid JSON"});
+    check_refused(outputs, {"--worker", "{}"}, 2, {"--worker", "verbosity"});
+    check_refused(outputs, {"--worker"}, 2, {"no option --worker"});
+    check_refused(outputs, {"verify", "--lines", "1"}, 2, {"no option --lines"});
+}
+
 /// Whether a process has this among its arguments.
 bool is_running_with(const std::string& argument) {
     for (const auto& entry : fs::directory_iterator("/proc")) {

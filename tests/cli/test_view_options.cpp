@@ -4,8 +4,7 @@
 #include "host/base/whole_file.hpp"
 #include "host/cli/view_options.hpp"
 #include "host/error.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
@@ -166,8 +165,6 @@ TEST_CASE("bench measures what the options show, and --light leaves the scene to
     const std::string lit = hash_of({"--light", "1,2,3", "--light=-4,5,6,1,1,0", scene_file("planes")});
     CHECK(lit != usual);
     CHECK(hash_of({scene_file("planes"), "--angle", "20"}) != usual);
-    const ScratchFolder none;
-    check_refused(none, {"bench", scene_file("planes"), "--tune", "--from", "1,2,3"}, 2, {"--from with --tune"});
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "host/model/mapping_rule.hpp"
-#include "host/ring/cost_image.hpp"
 #include "host/ring/mapping.hpp"
+#include "host/ring/schedule.hpp"
 
 namespace raya {
 

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "host/explore/figures.hpp"
-#include "host/ring/exchange_plan.hpp"
+#include "host/ring/route.hpp"
 #include "host/ring/schedule.hpp"
 #include "tests/explore/random_settings.hpp"
 

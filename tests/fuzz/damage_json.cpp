@@ -48,7 +48,7 @@ const char* const kTexts[] = {"",
                               "raya bench",
                               "raya verify",
                               "raya frames",
-                              "raya bench --tune",
+                              "raya tune",
                               "cyclic",
                               "cyclic:3",
                               "column",
@@ -121,7 +121,8 @@ Document other_value(const Document& value, Random& random) {
 }
 
 void mutate_text(Document& value, Random& random) {
-    std::string text = value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Document::error_handler_t::replace);
+    std::string text =
+        value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Document::error_handler_t::replace);
     if (random.one_in(4)) text.insert(random.below(text.size() + 1), std::string(1 + random.below(300), 'x'));
     mutate_bytes(text, text.size() + 16);
     value = text;

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "host/base/temporary_folder.hpp"
+#include "tests/base/temporary_folder.hpp"
 
 namespace raya::fuzz {
 

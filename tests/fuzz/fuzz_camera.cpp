@@ -3,7 +3,7 @@
 
 #include "host/cli/camera_path.hpp"
 #include "host/error.hpp"
-#include "host/scene/view_fault.hpp"
+#include "host/scene/outline.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace raya;

@@ -1,6 +1,6 @@
 // Checkpoints, as `raya render --resume` reads them: any bytes are a checkpoint of this render or refused; one that was
 // read survives being written.
-#include "host/base/verbosity.hpp"
+#include "host/base/say.hpp"
 #include "host/cli/keep_options.hpp"
 #include "host/error.hpp"
 #include "tests/fuzz/fuzz.hpp"

@@ -1,6 +1,6 @@
 // Records of frames, as `raya render --frames` reads them: any bytes are a record or refused; one that was read
 // survives being written.
-#include "host/base/read_file.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"
 #include "tests/fuzz/fuzz.hpp"

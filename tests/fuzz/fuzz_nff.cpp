@@ -3,12 +3,9 @@
 #include <vector>
 
 #include "host/error.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/nff_dialects.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_remark.hpp"
-#include "host/scene/nff_writer.hpp"
-#include "host/scene/polygon_plane.hpp"
-#include "host/scene/triangulate.hpp"
+#include "host/scene/polygon.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {

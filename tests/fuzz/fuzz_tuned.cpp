@@ -1,4 +1,4 @@
-// Tuned files, as `raya render` reads them and `raya bench --tune` adds to them: any bytes are used, or ignored with a
+// Tuned files, as `raya render` reads them and `raya tune` adds to them: any bytes are used, or ignored with a
 // warning.
 #include "host/error.hpp"
 #include "host/tune/store.hpp"

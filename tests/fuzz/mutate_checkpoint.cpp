@@ -1,7 +1,7 @@
 // Checkpoints whose header or values are damaged and whose hash is right, so that the reader gets beyond it.
 #include <algorithm>
 
-#include "host/base/bytes_hash.hpp"
+#include "host/base/encoding.hpp"
 #include "tests/fuzz/mutate.hpp"
 
 namespace {

@@ -15,7 +15,7 @@
 
 #include "host/error.hpp"
 #include "host/image/image_io.hpp"
-#include "host/image/srgb.hpp"
+#include "host/image/tone.hpp"
 #include "tests/base/scratch_folder.hpp"
 #include "tests/image/read_image.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "host/base/whole_file.hpp"
 #include "host/image/plain_png.hpp"
-#include "host/image/srgb.hpp"
+#include "host/image/tone.hpp"
 #include "tests/base/scratch_folder.hpp"
 #include "tests/image/read_image.hpp"
 

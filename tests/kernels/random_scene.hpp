@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/polygon_plane.hpp"
+#include "host/scene/polygon.hpp"
 #include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/reference/reference.hpp"

@@ -3,12 +3,11 @@
 
 #include "host/cl/kernels.hpp"
 #include "host/error.hpp"
-#include "host/ring/contrast.hpp"
-#include "host/ring/filter.hpp"
+#include "host/ring/smoothing.hpp"
 #include "host/ring/tracer.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/link_exchange.hpp"
-#include "host/torus/node_kernels.hpp"
+#include "host/torus/node_array.hpp"
 
 namespace raya {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/model/load.hpp"
+#include "host/model/time_model.hpp"
 
 using namespace raya;
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 
-#include "host/ranks/clocks.hpp"
+#include "host/ranks/ranks.hpp"
 #include "tests/ranks/thread_ranks.hpp"
 
 namespace raya {

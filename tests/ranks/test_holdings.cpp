@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <mutex>
 
-#include "host/torus/torus_job.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "tests/ranks/thread_ranks.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/torus/random_torus.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/torus/node_share.hpp"
-#include "host/torus/standstill.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/ranks/thread_ranks.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"

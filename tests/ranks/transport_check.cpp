@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/base/module.hpp"
-#include "host/ranks/mpi_module.hpp"
 #include "host/ranks/ranks.hpp"
+#include "host/ranks/transport.hpp"
 
 namespace raya {
 namespace {

@@ -3,8 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "host/scene/polygon_plane.hpp"
-#include "host/scene/triangulate.hpp"
+#include "host/scene/polygon.hpp"
 #include "tests/reference/reference.hpp"
 
 namespace raya::reference {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/paths.h"
 #include "tests/reference/reference.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "host/scene/polygon_plane.hpp"
+#include "host/scene/polygon.hpp"
 #include "tests/reference/reference.hpp"
 
 namespace raya::reference {

@@ -8,7 +8,7 @@
 #include "host/cl/kernel_options.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/paths.h"
 
 namespace raya {

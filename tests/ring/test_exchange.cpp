@@ -2,9 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "host/ring/contrast.hpp"
-#include "host/ring/filter.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/ring/smoothing.hpp"
+#include "host/scene/packer.hpp"
 #include "kernels/shared/job.h"
 #include "tests/ring/grid_scene.hpp"
 #include "tests/ring/render_scene.hpp"

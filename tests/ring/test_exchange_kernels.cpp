@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "host/ring/contrast.hpp"
-#include "host/ring/filter.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/route.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/ring/smoothing.hpp"
+#include "host/scene/packer.hpp"
 #include "kernels/shared/job.h"
 #include "tests/ring/small_mapping.hpp"
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/error.hpp"
-#include "host/model/accel.hpp"
+#include "host/model/machine.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/scene/random_below.hpp"
 #include "tests/thorough.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/model/does_not_fit.hpp"
+#include "host/model/machine.hpp"
 #include "host/ring/pe_memory.hpp"
 #include "host/scene/split_mix.hpp"
 

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "host/ring/bus.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/neighbour_exchange.hpp"
-#include "host/ring/ring.hpp"
 #include "host/verify/transfers.hpp"
 #include "tests/ring/small_mapping.hpp"
 

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "host/model/budget.hpp"
-#include "host/ring/ring_trace.hpp"
-#include "host/ring/ring_work.hpp"
+#include "host/ring/ring_result.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/document.hpp"
 #include "tests/report/trace_schema.hpp"

@@ -8,7 +8,6 @@
 
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
-#include "host/scene/word_records.hpp"
 
 namespace raya {
 

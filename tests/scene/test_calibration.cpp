@@ -5,7 +5,7 @@
 
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/cli/run_program.hpp"
 #include "tests/paths.h"
 

@@ -13,10 +13,9 @@
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/outline.hpp"
-#include "host/scene/polygon_plane.hpp"
+#include "host/scene/polygon.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/paths.h"
 

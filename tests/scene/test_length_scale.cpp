@@ -7,7 +7,7 @@
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/length_scale.hpp"
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/paths.h"
 #include "tests/scene/scaled_scene.hpp"
 

@@ -6,8 +6,8 @@
 
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/nff_dialects.hpp"
-#include "host/scene/nff_reader.hpp"
 #include "tests/base/scratch_folder.hpp"
 
 namespace raya {

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/split_mix.hpp"
 
 using namespace raya;

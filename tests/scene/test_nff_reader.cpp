@@ -6,8 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/paths.h"
 
 using namespace raya;

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "host/error.hpp"
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/nff_writer.hpp"
+#include "host/scene/nff.hpp"
 #include "tests/paths.h"
 
 using namespace raya;

@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "host/scene/nff_reader.hpp"
-#include "host/scene/polygon_plane.hpp"
-#include "host/scene/triangulate.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/scene/nff.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/polygon.hpp"
 #include "tests/paths.h"
 #include "tests/reference/reference.hpp"
 #include "tests/scene/fp32.hpp"

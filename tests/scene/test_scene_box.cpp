@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/scene/scene_box.hpp"
 #include "host/scene/split_mix.hpp"
+#include "host/scene/view.hpp"
 
 namespace raya {
 namespace {

@@ -7,8 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "host/scene/polygon_plane.hpp"
-#include "host/scene/triangulate.hpp"
+#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "host/scene/split_mix.hpp"
-#include "host/scene/turn.hpp"
+#include "host/scene/view.hpp"
 
 namespace raya {
 namespace {

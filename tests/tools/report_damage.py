@@ -2,8 +2,8 @@
 import copy, random, re
 
 # In all reports of the test, and yet no member that every report has.
-OPTIONAL = {"bench-tune.json: results[].configuration.local_words", "bench-tune.json: results[].configuration.batch",
-            "bench-tune.json: results[].configuration.lanes", "bench-tune.json: results[].configuration.group"}
+OPTIONAL = {"tune.json: results[].configuration.local_words", "tune.json: results[].configuration.batch",
+            "tune.json: results[].configuration.lanes", "tune.json: results[].configuration.group"}
 OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # of any members, or of texts and numbers alike
 SIGNED = "length_exponent"  # which is 0 in the test
 

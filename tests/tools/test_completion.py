@@ -33,13 +33,13 @@ EXPECTED = [
     ("raya render FOLDER/", ["ball.nff"], ["notes.txt"]),
     ("raya render x.nff -o n", ["notes.txt"], ["ball.nff"]),
     ("raya study fig7 -o ", ["below"], ["notes.txt"]),
-    ("raya bench --ways none,g", ["grid"], ["bvh"]),
+    ("raya bench --variants none,g", ["grid"], ["bvh"]),
     ("raya verify --lanes ", ["1", "4", "8", "16"], ["notes.txt"]),
     ("raya render --size ", [], ["notes.txt", "ball.nff"]),
     ("raya manual gen", ["generate"], ["ball.nff"]),
     ("raya help stu", ["study"], ["render"]),
     ("raya help study fi", ["fig7", "fig13"], ["table2", "render"]),
-    ("raya render -", ["--quiet", "--verbose", "-q"], ["--lines"]),
+    ("raya render -", ["--quiet", "--verbose", "-q"], ["--worker"]),
     ("raya completion ", ["bash", "zsh", "fish"], ["notes.txt"]),
 ]
 

@@ -50,7 +50,7 @@ case $1 in
         ! fault wrong_verify || { echo "FAIL  geometry  grid"; exit 4; } ;;
     generate) : >"${@: -1}" ;;
     bench)
-        if [[ $2 == --help ]]; then printf 'stands for a PE, 1..1,024; default\n'; fault tune && echo "  --tune"; exit; fi
+        if [[ $2 == --help ]]; then printf 'stands for a PE, 1..1,024; default\n'; exit; fi
         group=10 words="$*"
         [[ $words != *--group* ]] || group=$(sed 's/.*--group \([0-9]*\).*/\1/' <<<"$words")
         printf 'trace  fp32  1  %d  %d  5  1 1 1 1 1 abc\ntrace  e6m15  1  1  2000.5  5  1 1 1 1 1 abc\n' "$group" $((group * 80)) ;;
@@ -118,7 +118,7 @@ if (($# > 0)); then
     echo "tools/gpu_day: as expected"
     exit
 fi
-expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of that | 1706.67 | 2000.5 | reached" "1000 | 800 | missed" "raya bench has no --tune"
+expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of that | 1706.67 | 2000.5 | reached" "1000 | 800 | missed"
 
 # Each in a folder of its own: what fails is named, and the rest is done.
 another() { out=$scratch/$1; touch "$day/$1"; gpu_day "${@:2}"; rm "$day/$1"; }
@@ -128,13 +128,11 @@ expect 3 "no device: raya: no OpenCL device" "devices: exit code 3"
 [[ $(ended) == 1 ]] || fail "something was run without a device"
 another wrong_verify --all
 expect 4 "- verify-full: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 16 | 0 | 0" "| 1 | devices, verify --quick | 1 | 1 | 0"
-another tune --stage 4
-expect 0 "roofline, tuning | 15 | 0 | 0"
 
 # A step that hangs; and a stage whose time is over, which goes on when it is asked for again.
 sed -i 's/^limits=.*/limits=(0 3 1 0 60 60)/' "$day/gpu_day"
 another slow_verify --all
-expect 4 "- verify-quick: not done after" "| 3 | hashes | 0 | 16 | 0" "- hash-torus-cones-spa22: late" "| 4 | bench, roofline, tuning | 13 | 0 | 1"
+expect 4 "- verify-quick: not done after" "| 3 | hashes | 0 | 16 | 0" "- hash-torus-cones-spa22: late" "| 4 | bench, roofline, tuning | 14 | 0 | 0"
 sed -i 's/^limits=.*/limits=(0 60 60 60 60 60)/' "$day/gpu_day"
 gpu_day --stage 3
 expect 4 "- verify-quick: not done after" "| 3 | hashes | 16 | 0 | 0"

@@ -161,7 +161,7 @@ def named_twice(types):
 # Includes that must be found: up the table, between neighbours that do not know each other, in a circle, OpenCL in a report.
 PLANTED = [
     ("host/scene/scene.hpp", "host/ring/mapping.hpp", "may not know host/ring/"),
-    ("host/torus/census.cpp", "host/ring/mapping.hpp", "may not know host/ring/"),
+    ("host/torus/node_transfers.cpp", "host/ring/mapping.hpp", "may not know host/ring/"),
     ("kernels/number/lanes.clh", "kernels/number/number.clh", "on a way round"),
     ("host/report/table.hpp", "host/cl/opencl.hpp", "reaches OpenCL's headers"),
 ]

@@ -26,12 +26,12 @@ SCENES = ROOT / "scenes"
 SELDOM = {
     "render.json: measured.earlier_s": "of a render that was stopped: tests/cli/test_keep.cpp",
     "bench.json: rows[].no_roofline": "of devices that do not time their commands",
-    "bench-tune.json: results[].configuration.trees": "a knob of the grid, whose search takes long",
-    "bench-tune.json: results[].configuration.beams": "likewise",
-    "bench-tune.json: results[].configuration.registers": "NVIDIA alone",
-    "bench-tune.json: results[].configuration.link_exchange": "a knob of the torus, whose search takes long",
+    "tune.json: results[].configuration.trees": "a knob of the grid, whose search takes long",
+    "tune.json: results[].configuration.beams": "likewise",
+    "tune.json: results[].configuration.registers": "NVIDIA alone",
+    "tune.json: results[].configuration.link_exchange": "a knob of the torus, whose search takes long",
 }
-OF_RANKS = ("ping.json: ", "bench-ranks.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # not seen without MPI
+OF_RANKS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # not seen without MPI
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 # A file of the kernels, a text of it, and what takes its place: a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
@@ -152,9 +152,7 @@ class Reports:
         few = ["--format", "fp32", "--size", "16", "--lanes", "1", "--samples", "1", "--report"]
         self.one("bench", "bench", scene, *few, "base.json", of="base.json")
         self.one("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *few, "r.json")
-        self.one("bench", "bench", scene, "--ways", "none", *few, "r.json")
-        if self.mpirun:
-            self.one("bench-ranks", "bench", scene, "--ranks", "1", "--pes", "8", *few, "r.json", RAYA_MPIRUN=self.mpirun)
+        self.one("bench", "bench", scene, "--variants", "none", *few, "r.json")
         self.tune(scene)
         check = ["verify", "--brief", "--lanes", "1", "--only", "machine mapping: rows", "--report", "r.json"]
         self.one("verify", *check)
@@ -170,8 +168,8 @@ class Reports:
     def tune(self, scene):
         """Until a candidate has ended, however slow this machine is."""
         seconds = 3
-        while self.made[-1][0] != "bench-tune.json" or not self.made[-1][2]["results"]:
-            self.one("bench-tune", "bench", scene, "--tune", "--seconds", seconds, "--ways", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
+        while self.made[-1][0] != "tune.json" or not self.made[-1][2]["results"]:
+            self.one("tune", "tune", scene, "--seconds", seconds, "--variants", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
                      XDG_CACHE_HOME=str(self.folder / "cache"))
             seconds *= 2
         self.take("tuned", "what it keeps", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())

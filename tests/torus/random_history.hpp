@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/torus/history.hpp"
-#include "host/torus/torus_time.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/torus/random_torus.hpp"
 
 namespace raya {

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"

@@ -4,7 +4,6 @@
 #include <tuple>
 
 #include "host/torus/torus_plan.hpp"
-#include "host/torus/windows.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/recorded.hpp"
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "host/torus/packet_trace.hpp"
+#include "host/torus/torus_trace.hpp"
 #include "tests/base/gunzip.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/recorded.hpp"

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "host/torus/async_machine.hpp"
-#include "host/torus/history_recorder.hpp"
-#include "host/torus/torus_time.hpp"
+#include "host/torus/history.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/render_torus.hpp"
 

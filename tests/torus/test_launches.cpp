@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "host/cl/tuned.hpp"
-#include "host/scene/word_records.hpp"
+#include "host/scene/packer.hpp"
 #include "host/torus/launch_plan.hpp"
-#include "host/torus/standstill.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"
 #include "tests/torus/render_torus.hpp"

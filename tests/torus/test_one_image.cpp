@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "host/torus/standstill.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/scene/scaled_scene.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"

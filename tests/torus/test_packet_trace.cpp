@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/scene/split_mix.hpp"
-#include "host/torus/packet_trace.hpp"
+#include "host/torus/torus_trace.hpp"
 #include "tests/base/gunzip.hpp"
 
 namespace raya {

@@ -1,7 +1,7 @@
 // What is written for SimGrid, against hand-made text.
 #include <catch2/catch.hpp>
 
-#include "host/torus/simgrid_files.hpp"
+#include "host/torus/async_machine.hpp"
 #include "tests/torus/random_history.hpp"
 
 namespace raya {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "host/torus/standstill.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/torus/random_torus.hpp"
 #include "tests/torus/render_torus.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "host/scene/split_mix.hpp"
 #include "host/torus/topology.hpp"
-#include "host/torus/torus_time.hpp"
+#include "host/torus/torus_result.hpp"
 
 namespace raya {
 namespace {

@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "host/model/budget.hpp"
-#include "host/torus/torus_time.hpp"
+#include "host/torus/torus_result.hpp"
 #include "host/torus/torus_trace.hpp"
-#include "host/torus/torus_work.hpp"
 #include "tests/document.hpp"
 #include "tests/report/trace_schema.hpp"
 #include "tests/torus/render_torus.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "host/torus/windows.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "tests/torus/random_nodes.hpp"
 
 namespace raya {

@@ -78,7 +78,7 @@ TEST_CASE("a damaged file, and one of something else, is refused with the reason
     for (const auto& [bad, reason] :
          {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "not valid JSON"},
           {"", "t.json:1: not valid JSON (byte 1)"},
-          {"{}", "t.json: not a file of raya bench --tune"},
+          {"{}", "t.json: not a file of raya tune"},
           {changed("\"version\": 2", "\"version\": 1"), "another form"},
           {changed("\"raya\": \"", "\"raya\": \"9."), "another version of raya: 9."},
           {changed("550.1", "551.0"), "another device's driver: 551.0, not 550.1"},
@@ -136,8 +136,8 @@ TEST_CASE("a file that cannot be used is told of once, ignored, and written over
         Warned warned;
         for (const TunedEntry& entry : kFile.entries) CHECK_FALSE(warned.source(device, entry.what));
         REQUIRE(warned.texts.size() == 1);
-        CHECK_THAT(warned.texts[0], Catch::Contains(file.string()) && Catch::Contains("ignored") &&
-                                        Catch::Contains("raya bench --tune"));
+        CHECK_THAT(warned.texts[0],
+                   Catch::Contains(file.string()) && Catch::Contains("ignored") && Catch::Contains("raya tune"));
         if (folder) break;
         keep_tuned(device, kFile);
         CHECK(Warned().source(device, kFile.entries[0].what));

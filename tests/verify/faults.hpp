@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "host/cl/kernel_patch.hpp"
+#include "host/cl/kernel_source.hpp"
 #include "kernels/shared/events.h"
 
 namespace raya {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/verify/known_answers.hpp"
+#include "host/verify/numbers.hpp"
 #include "tests/number/oracle_results.hpp"
 #include "tests/number/random_operands.hpp"
 #include "tests/verify/exact_value.hpp"

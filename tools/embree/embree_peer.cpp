@@ -12,7 +12,7 @@
 #include <exception>
 #include <string>
 
-#include "host/scene/nff_reader.hpp"
+#include "host/scene/nff.hpp"
 #include "tools/embree/picture.hpp"
 
 namespace raya {

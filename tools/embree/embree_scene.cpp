@@ -4,8 +4,7 @@
 #include <chrono>
 
 #include "host/error.hpp"
-#include "host/scene/polygon_plane.hpp"
-#include "host/scene/triangulate.hpp"
+#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {

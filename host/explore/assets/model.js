@@ -1,5 +1,5 @@
 // The model behind the page: owners, loads and figures of a setting, as the program computes them (kernels/shared/
-// mapping.h, host/ring/exchange_plan.cpp, host/study/lattice.cpp, host/explore/figures.cpp), to the last digit. Whole
+// mapping.h, host/ring/route.cpp, host/study/lattice.cpp, host/explore/figures.cpp), to the last digit. Whole
 // numbers below 2^53 are exact in JavaScript; products of 32 bits go through Math.imul. Knows nothing of the page.
 //
 // A setting: {kind, offset, fold, pes, a, b, seed}; kind: slots, rows, blocks, grid, tiles or random; a, b: rows and
@@ -83,7 +83,7 @@ function loadsOf(owners, costs, pes) {
   return loads;
 }
 
-// host/model/load.cpp, in the same order of operations.
+// host/model/time_model.cpp, in the same order of operations.
 function balanceOf(loads) {
   const pes = loads.length;
   let sum = 0, busiest = 0, idlest = 0;

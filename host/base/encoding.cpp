@@ -1,0 +1,91 @@
+#include "host/base/encoding.hpp"
+
+#include <xxhash.h>
+#include <zlib.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+namespace raya {
+namespace {
+
+constexpr int kLevel = 4;              // half the time of zlib's own choice, 6, for a trace of packets; 8 % more bytes
+constexpr int kGzip = 16 + MAX_WBITS;  // with gzip's header and trailer
+constexpr int kMemory = 8;             // zlib's own choice
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::string_view three = bytes.substr(i, 3);
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += k <= three.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+std::string hex_digits(std::span<const unsigned char> bytes) {
+    std::string text;
+    for (const unsigned char byte : bytes)
+        for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
+    return text;
+}
+
+std::string bytes_hash(std::string_view bytes) {
+    XXH128_canonical_t canonical;
+    XXH128_canonicalFromHash(&canonical, XXH3_128bits(bytes.data(), bytes.size()));
+    return hex_digits(canonical.digest);
+}
+
+struct GzipText::Stream {
+    Stream() {
+        const int code = deflateInit2(&z, kLevel, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY);
+        if (code == Z_MEM_ERROR) throw std::bad_alloc();
+        if (code != Z_OK) throw std::runtime_error("zlib: deflateInit2 failed");
+    }
+    Stream(const Stream&) = delete;
+    Stream& operator=(const Stream&) = delete;
+    ~Stream() { deflateEnd(&z); }
+
+    z_stream z{};
+};
+
+GzipText::GzipText() : stream_(std::make_unique<Stream>()) {}
+GzipText::~GzipText() = default;
+
+void GzipText::append(std::string_view text) {
+    constexpr std::size_t kMost = std::numeric_limits<uInt>::max();  // that zlib takes at once
+    for (; text.size() > kMost; text.remove_prefix(kMost)) deflate_all(text.substr(0, kMost), false);
+    deflate_all(text, false);
+}
+
+std::string GzipText::finish() {
+    deflate_all({}, true);
+    stream_.reset();
+    return std::move(bytes_);
+}
+
+void GzipText::deflate_all(std::string_view text, bool last) {
+    if (!stream_) throw std::logic_error("GzipText: finished already");
+    z_stream& z = stream_->z;
+    std::array<Bytef, 1 << 16> block{};
+    const void* const in = text.data();
+    z.next_in = const_cast<Bytef*>(static_cast<const Bytef*>(in));  // zlib reads it only
+    z.avail_in = static_cast<uInt>(text.size());
+    do {
+        z.next_out = block.data();
+        z.avail_out = static_cast<uInt>(block.size());
+        if (deflate(&z, last ? Z_FINISH : Z_NO_FLUSH) == Z_STREAM_ERROR) throw std::logic_error("zlib: deflate failed");
+        bytes_.append(block.begin(), block.end() - z.avail_out);
+    } while (z.avail_out == 0);
+}
+
+}  // namespace raya

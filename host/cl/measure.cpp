@@ -1,0 +1,154 @@
+#include "host/cl/measure.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "host/cl/commands.hpp"
+#include "host/cl/kernel_options.hpp"
+#include "kernels/shared/chains.h"
+
+namespace raya {
+namespace {
+
+// A few groups a unit on a CPU; enough to hide latencies elsewhere.
+std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
+    return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 * group : 2048);
+}
+
+constexpr int kSamples = 2;                                      // each of three times
+constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // of kOperations
+
+// Two buffers, an eighth of the memory at most.
+std::uint64_t copied_bytes(const DeviceInfo& device) {
+    constexpr std::uint64_t kEnough = 256u << 20;
+    return std::min({kEnough, device.max_allocation_bytes, device.global_memory_bytes / 16});
+}
+
+double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
+    Buffer<std::uint8_t> from = session.buffer<std::uint8_t>("peak, from", bytes),
+                         to = session.buffer<std::uint8_t>("peak, to", bytes);
+    session.fill("peak", from, 1);  // memory that nobody has written to may not be there yet
+    session.fill("peak", to, 2);
+    session.clear_profile();
+    for (int i = 0; i < kSamples; ++i) session.copy("peak", from, 0, to, 0, bytes);
+    const std::uint64_t least_ns = session.profile().summary().front().min_ns;
+    return least_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(least_ns) : 0;
+}
+
+// The programs of a device, built once.
+class Peak {
+  public:
+    Peak(Session& session, const NumberFormat& format, std::uint32_t lanes)
+        : session_(session), of_render_(session, format, lanes) {
+        const NumberFormat fp32{};
+        const std::uint32_t widest = default_lanes(session.device());
+        if (format != fp32 || lanes != widest) widest_.emplace(session, fp32, widest);
+    }
+
+    DevicePeak once() {
+        DevicePeak peak;
+        peak.multiply_per_s = of_render_.measure(kMultiplyAdd, kSamples);
+        peak.fp32_per_s = widest_ ? widest_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
+        peak.divide_per_s = of_render_.measure(kDivide, kSamples);
+        peak.root_per_s = of_render_.measure(kRoot, kSamples);
+        peak.copy_bytes = copied_bytes(session_.device());
+        peak.copy_bytes_per_s = copy_bytes_per_s(session_, peak.copy_bytes);
+        return peak;
+    }
+
+  private:
+    Session& session_;
+    OperationRates of_render_;
+    std::optional<OperationRates> widest_;  // where that is another program
+};
+
+}  // namespace
+
+OperationRates::OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes)
+    : session_(session),
+      group_size_(default_group_size(session.device())),
+      items_(work_items(session.device(), group_size_)),
+      lanes_(lanes),
+      kernels_(session, {.lanes = lanes, .group_size = group_size_, .format = format}),
+      chains_(kernels_.get<Chains>()),
+      results_(session.buffer<float>("results of operations", items_ * lanes)) {}
+
+double OperationRates::seconds(std::size_t kind) {
+    session_.clear_profile();
+    session_.launch("operations", chains_, items_ / group_size_, group_size_, Uint<"kind">{static_cast<cl_uint>(kind)},
+                    Uint<"rounds">{rounds_[kind]}, 1.0f, results_);
+    const double ns = static_cast<double>(session_.profile().summary().back().total_ns);
+    session_.clear_profile();
+    return ns * 1e-9;
+}
+
+void OperationRates::find_rounds(std::size_t kind) {
+    rounds_[kind] = 1000;
+    seconds(kind);  // PoCL compiles here
+    while (seconds(kind) < 0.01 && rounds_[kind] < 100'000'000) rounds_[kind] *= 4;
+}
+
+double OperationRates::measure(std::size_t kind, int samples) {
+    if (rounds_[kind] == 0) find_rounds(kind);
+    const double operations = static_cast<double>(items_ * lanes_) * RAYA_CHAINS * rounds_[kind];
+    double best = 0;
+    for (int i = 0; i < samples; ++i) {
+        const double once = seconds(kind);
+        if (once > 0) best = std::max(best, operations / once);
+    }
+    return best;
+}
+
+DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes) {
+    constexpr int kTimes = 3;
+    Session session(device);
+    DevicePeak best;
+    if (session.profile().timed()) {
+        Peak peaks(session, format, lanes);
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < kTimes; ++i) {
+            const DevicePeak peak = peaks.once();
+            least = std::min(least, peak.fp32_per_s);
+            for (double DevicePeak::*rate :
+                 {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
+                  &DevicePeak::root_per_s, &DevicePeak::copy_bytes_per_s})
+                best.*rate = std::max(best.*rate, peak.*rate);
+            best.copy_bytes = peak.copy_bytes;
+        }
+        best.scatter = best.fp32_per_s > 0 ? 1 - least / best.fp32_per_s : 0;
+    }
+    best.format = format_name(format);
+    return best;
+}
+
+ClockAnchor anchor_between(std::uint64_t before, std::uint64_t queued, std::uint64_t after) {
+    if (before <= queued && queued <= after) return {};
+    const std::uint64_t half = (after - before) / 2;
+    return {.same_clock = false,
+            .offset_ns = static_cast<std::int64_t>(before + half) - static_cast<std::int64_t>(queued),
+            .uncertainty_ns = half + (after - before) % 2};
+}
+
+ClockAnchor clock_anchor(Session& session) {
+    if (!session.profile().timed()) throw std::logic_error("clock_anchor: the device does not time its commands");
+    constexpr int kTries = 16;
+    Buffer<std::uint32_t> word = session.buffer<std::uint32_t>("anchor of clocks", 1);
+    std::uint64_t shortest = ~std::uint64_t{0};
+    ClockAnchor best;
+    for (int i = 0; i < kTries; ++i) {
+        session.clear_profile();
+        const std::uint64_t before = host_clock_ns();
+        session.fill("anchor", word, 0);
+        const std::uint64_t after = host_clock_ns();
+        const std::uint64_t queued = session.profile().commands().back().queued;
+        if (after - before >= shortest) continue;
+        shortest = after - before;
+        best = anchor_between(before, queued, after);
+    }
+    session.clear_profile();
+    return best;
+}
+
+}  // namespace raya

@@ -1,0 +1,51 @@
+#include "host/cl/memory.hpp"
+
+#include <algorithm>
+
+namespace raya {
+namespace {
+
+constexpr std::size_t kAlignment = 64;  // bytes; a cache line, and what drivers copy fastest from
+
+}  // namespace
+
+HostMemory::HostMemory(const cl::Context& context, const cl::CommandQueue& queue, Kind kind, std::size_t bytes)
+    : queue_(queue), size_(bytes) {
+    if (kind == Kind::kPlain) {
+        plain_.reset(new std::byte[bytes]);  // not cleared: pages are taken as they are used
+        bytes_ = plain_.get();
+        return;
+    }
+    pinned_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
+    bytes_ = static_cast<std::byte*>(queue_.enqueueMapBuffer(pinned_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
+}
+
+// By the calls that do not throw.
+HostMemory::~HostMemory() {
+    if (last_() != nullptr) clWaitForEvents(1, &last_());
+    if (plain_ || bytes_ == nullptr) return;
+    clEnqueueUnmapMemObject(queue_(), pinned_(), bytes_, 0, nullptr, nullptr);
+    clFinish(queue_());
+}
+
+void HostMemory::wait() {
+    if (last_() != nullptr) std::exchange(last_, {}).wait();
+}
+
+Staging::Staging(const cl::Context& context, const cl::CommandQueue& queue, HostMemory::Kind kind,
+                 std::size_t half_bytes)
+    : halves_{{{context, queue, kind, half_bytes}, {context, queue, kind, half_bytes}}} {}
+
+Staging::Place Staging::take(std::size_t bytes) {
+    if (bytes > half_bytes() - used_) {
+        turn_ = (turn_ + 1) % halves_.size();
+        halves_[turn_].wait();
+        used_ = 0;
+    }
+    HostMemory& half = halves_[turn_];
+    const Place place{half, half.bytes() + used_};
+    used_ = std::min(half_bytes(), (used_ + bytes + kAlignment - 1) / kAlignment * kAlignment);
+    return place;
+}
+
+}  // namespace raya

@@ -1,0 +1,79 @@
+// What needs neighbours' pixels, over ring or bus: the 3 x 3 filter (kernels/ring/filter.cl), and marking the pixels
+// that differ from a neighbour (kernels/ring/contrast.cl).
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "host/cl/commands.hpp"
+#include "host/cl/kernels.hpp"
+#include "host/ring/bus_and_ring.hpp"
+#include "host/ring/neighbour_exchange.hpp"
+
+namespace raya {
+
+struct ExchangeSetup {
+    Session& session;
+    Buffer<std::uint32_t> broadcast;  // the job's words
+    PeSegment pes;                    // on the device
+    std::uint32_t capacity = 0;       // pixels in the memory of each PE
+    std::uint32_t group_size = 1;
+};
+
+using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&,
+                                            Uint<"side">, Uint<"distance">, Uint<"begin">, Uint<"band">,
+                                            Uint<"capacity">, Uint<"first_pe">, const Buffer<float>&, Buffer<float>&>;
+using TakeMeansKernel = DescribedKernel<"ring/filter.cl", "take_means", const Buffer<std::uint32_t>&, Uint<"capacity">,
+                                        Uint<"first_pe">, Buffer<float>&>;
+
+class RingFilter {
+  public:
+    /// Takes the kernels, which are for one lane, launches each once for nothing (PoCL compiles at the first launch)
+    /// and takes the device memory.
+    RingFilter(Kernels& kernels, const ExchangeSetup& setup);
+
+    /// Every pixel becomes the mean of its 3 x 3 neighbourhood. `pixels` is [PE][3][capacity]; afterwards it may name
+    /// another buffer of that shape.
+    void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
+
+  private:
+    void sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label, raya_u32 first_side,
+                  raya_u32 second_side);
+    void add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity);
+
+    ExchangeSetup setup_;
+    AddNeighboursKernel add_neighbours_;
+    TakeMeansKernel take_means_;
+    Buffer<float> sums_;  // [PE][3][capacity]
+};
+
+using MarkContrastsKernel =
+    DescribedKernel<"ring/contrast.cl", "mark_contrasts", const Buffer<std::uint32_t>&, Uint<"side">, Uint<"distance">,
+                    Uint<"begin">, Uint<"band">, Uint<"capacity">, Uint<"first_pe">, cl_float, const Buffer<float>&,
+                    const Buffer<float>&, Buffer<std::uint8_t>&>;
+
+class RingContrast {
+  public:
+    /// Takes the kernel, which is for one lane, launches it once for nothing (PoCL compiles at the first launch) and
+    /// takes the device memory. `threshold` is a number of the format, 0..1.
+    RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold);
+
+    /// Marks the pixels of `pixels`, [PE][3][capacity].
+    void apply(const Buffer<float>& pixels, NeighbourExchange& exchange);
+
+    /// [PE][capacity]: 1 where a pixel is marked, else 0.
+    const Buffer<std::uint8_t>& marks() const { return marks_; }
+
+    /// Takes marks that were made before.
+    void set_marks(std::span<const std::uint8_t> marks) { setup_.session.write("set marks", marks_, marks); }
+
+  private:
+    void mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity,
+                        const Buffer<float>& pixels);
+
+    ExchangeSetup setup_;
+    float threshold_;
+    MarkContrastsKernel mark_contrasts_;
+    Buffer<std::uint8_t> marks_;
+};
+
+}  // namespace raya

@@ -1,0 +1,197 @@
+// SPD's scenes (E. Haines): balls, gears, lattice.
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "host/error.hpp"
+#include "host/scene/generate.hpp"
+
+namespace raya {
+namespace {
+
+/// Where nine unit balls touch the one that they sit on, seen from the +z side, in SPD's order: of the twelve
+/// neighbours in a dense packing the three below are left out. Three groups, a third of a turn apart, of one upper and
+/// two on the equator.
+std::array<Vec3, 9> nine_directions() {
+    std::array<Vec3, 9> directions;
+    const double upper = std::sqrt(2.0 / 3.0), outward = std::sqrt(1.0 / 3.0);
+    for (std::size_t group = 0; group < 3; ++group) {
+        const double azimuth = std::numbers::pi * (1.0 / 4 + 2.0 / 3 * static_cast<double>(group));
+        const double before = azimuth - std::numbers::pi / 6, after = azimuth + std::numbers::pi / 6;
+        directions[3 * group] = Vec3(outward * std::cos(azimuth), outward * std::sin(azimuth), upper);
+        directions[3 * group + 1] = Vec3(std::cos(before), std::sin(before), 0);
+        directions[3 * group + 2] = Vec3(std::cos(after), std::sin(after), 0);
+    }
+    return directions;
+}
+
+/// `v` turned by the shortest rotation that takes +z to the unit vector `axis` (Rodrigues); half a turn about y for -z,
+/// as SPD has it.
+Vec3 turned_from_z(const Vec3& v, const Vec3& axis) {
+    if (axis.z < -1 + 1e-9) return {-v.x, v.y, -v.z};
+    const Vec3 pivot(-axis.y, axis.x, 0);
+    return v * axis.z + pivot.cross(v) + pivot * (pivot.dot(v) / (1 + axis.z));
+}
+
+void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const Vec3& axis) {
+    static const std::array<Vec3, 9> directions = nine_directions();
+    scene.spheres.push_back({{rounded(centre.x), rounded(centre.y), rounded(centre.z)}, rounded(radius), 1});
+    if (level == 0) return;
+    for (const Vec3& direction : directions) {
+        const Vec3 outward = turned_from_z(direction, axis);
+        add_flake(scene, level - 1, centre + outward * (radius * 4 / 3), radius / 3, outward);
+    }
+}
+
+/// A multiple of four: wheels that mesh on one side then do so on all four.
+constexpr int kTeeth = 24;
+
+struct Corner {
+    double turn;    // from the middle of the tooth, in shares of the pitch
+    double radius;  // in pitch radii
+};
+
+/// A tooth, counter-clockwise: foot, flank and tip, tip, flank and foot. Narrower than half a pitch at the pitch
+/// circle, and shorter than the gap that it stands in is deep: wheels that mesh do not touch.
+constexpr std::array<Corner, 6> kTooth{
+    {{-0.32, 0.9}, {-0.235, 1}, {-0.12, 1.075}, {0.12, 1.075}, {0.235, 1}, {0.32, 0.9}}};
+
+/// Of the cube [-1, 1]^3, from above one of its upright edges.
+View view_of_wheels() { return {{2.4, 3.2, 3.0}, {0, 0, -0.15}, {0, 0, 1}, 36, 0, 512, 512}; }
+
+/// Brass, steel, glass and red enamel.
+std::vector<Surface> finishes() {
+    return {{{0.85, 0.65, 0.25}, 0.7, 0.3, 30, 0, 1, {}},
+            {{0.75, 0.8, 0.85}, 0.4, 0.6, 100, 0, 1, {}},
+            {{0.75, 0.95, 0.85}, 0.2, 0.1, 100, 0.7, 1.1, {}},
+            {{0.8, 0.15, 0.12}, 0.9, 0.1, 20, 0, 1, {}}};
+}
+
+/// A wheel about an upright axis.
+struct Wheel {
+    Vec3 centre;
+    double radius;     // of the pitch circle
+    double thickness;  // along the axis
+    double turned;     // of its first tooth from the x axis, in shares of the pitch
+    int surface;
+};
+
+/// The wheel's outline at the given height, counter-clockwise seen from above.
+std::vector<Vec3> outline(const Wheel& wheel, double height) {
+    std::vector<Vec3> corners;
+    for (int tooth = 0; tooth < kTeeth; ++tooth)
+        for (const Corner& corner : kTooth) {
+            const double angle = 2 * std::numbers::pi * (tooth + wheel.turned + corner.turn) / kTeeth;
+            const double radius = wheel.radius * corner.radius;
+            corners.emplace_back(rounded(wheel.centre.x + radius * std::cos(angle)),
+                                 rounded(wheel.centre.y + radius * std::sin(angle)), height);
+        }
+    return corners;
+}
+
+/// Two faces, and a quadrilateral for each of their edges; all show their fronts to the outside.
+void add_wheel(Scene& scene, const Wheel& wheel) {
+    const std::vector<Vec3> upper = outline(wheel, rounded(wheel.centre.z + wheel.thickness / 2));
+    const std::vector<Vec3> lower = outline(wheel, rounded(wheel.centre.z - wheel.thickness / 2));
+    scene.polygons.push_back({upper, {}, wheel.surface});
+    scene.polygons.push_back({{lower.rbegin(), lower.rend()}, {}, wheel.surface});
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+        const std::size_t next = (i + 1) % upper.size();
+        scene.polygons.push_back({{lower[i], lower[next], upper[next], upper[i]}, {}, wheel.surface});
+    }
+}
+
+// Shares of the distance between neighbouring spheres. A cylinder starts inside its sphere, half-way to its surface but
+// for a hundredth, and ends so far inside the next one.
+constexpr double kSphereRadius = 1.0 / 4, kCylinderRadius = 1.0 / 16, kCylinderStart = 0.99 / 8;
+
+/// From above the middle of the far edge of the top, half a distance beside a column and below a layer of spheres, so
+/// that the eye is in none of them; half-way down through the cube. Of SPD's view only that of 12 is known.
+View view_of_lattice(int size) {
+    const double x = (size / 2 + 0.5) / size, z = 1 - 0.5 / size;
+    return {rounded({x, 1, z}), rounded({x, -1, z - 2}), {0.2, 1, 0}, 60, 0, 512, 512};
+}
+
+void add_node(Scene& scene, int size, const std::array<int, 3>& node) {
+    const double distance = 1.0 / size;
+    const Vec3 centre(node[0] * distance, node[1] * distance, node[2] * distance);
+    scene.spheres.push_back({rounded(centre), rounded(kSphereRadius * distance), 0});
+    for (int axis = 0; axis < 3; ++axis) {
+        if (node[static_cast<std::size_t>(axis)] == size) continue;
+        Vec3 from = centre, to = centre;
+        from[axis] += kCylinderStart * distance;
+        to[axis] += (1 - kCylinderStart) * distance;
+        const double radius = rounded(kCylinderRadius * distance);
+        scene.cones.push_back({rounded(from), radius, rounded(to), radius, 1 + axis});
+    }
+}
+
+}  // namespace
+
+Scene generate_balls(int level) {
+    if (level < 0 || level > kHighestBallsLevel)
+        throw UserError(fmt::format("balls: level {}: must lie in 0..{}", level, kHighestBallsLevel));
+    Scene scene;
+    scene.name = fmt::format("balls{}.nff", level);
+    scene.background = {0.078, 0.361, 0.753};
+    scene.view = {{2.1, 1.3, 1.7}, {0, 0, 0}, {0, 0, 1}, 45, 0.01, 512, 512};
+    scene.lights = {{{4, 3, 2}, {}}, {{1, -4, 4}, {}}, {{-3, 1, 5}, {}}};
+    scene.surfaces = {{{1, 0.75, 0.33}, 0.8, 0, 100000, 0, 1, {}}, {{1, 0.9, 0.7}, 0.5, 0.5, 3.0827, 0, 1, {}}};
+    scene.polygons = {{{{12, 12, -0.5}, {-12, 12, -0.5}, {-12, -12, -0.5}, {12, -12, -0.5}}, {}, 0}};
+    add_flake(scene, level, {0, 0, 0}, 0.5, {0, 0, 1});
+    share_surfaces(scene);
+    return scene;
+}
+
+Scene generate_gears(int size) {
+    if (size < 1 || size > kHighestGearsSize)
+        throw UserError(fmt::format("gears: size {}: must lie in 1..{}", size, kHighestGearsSize));
+    Scene scene;
+    scene.name = fmt::format("gears{}.nff", size);
+    scene.background = {0.078, 0.361, 0.753};
+    scene.view = view_of_wheels();
+    scene.lights = {{{4, 3, 5}, {}}, {{1, 6, 3}, {}}, {{-4, 2, 6}, {}}, {{5, -2, 2}, {}}, {{0, 0, 8}, {}}};
+    scene.surfaces = finishes();
+    const int ground = static_cast<int>(scene.surfaces.size());
+    scene.surfaces.push_back({{0.85, 0.8, 0.7}, 0.9, 0, 0, 0, 1, {}});
+    scene.polygons = {{{{12, 12, -1.2}, {-12, 12, -1.2}, {-12, -12, -1.2}, {12, -12, -1.2}}, {}, ground}};
+    const double distance = 2.0 / size;
+    for (int x = 0; x < size; ++x)
+        for (int y = 0; y < size; ++y)
+            for (int z = 0; z < size; ++z) {
+                const Vec3 centre = Vec3(-1) + (Vec3(x, y, z) + Vec3(0.5)) * distance;
+                const double turned = (x + y) % 2 == 0 ? 0 : 0.5;  // a tooth faces a gap
+                add_wheel(scene, {centre, distance / 2, 0.4 * distance, turned, (x + 2 * y + z) % ground});
+            }
+    share_surfaces(scene);
+    return scene;
+}
+
+Scene generate_lattice(int size) {
+    if (size < 1 || size > kHighestLatticeSize)
+        throw UserError(fmt::format("lattice: size {}: must lie in 1..{}", size, kHighestLatticeSize));
+    Scene scene;
+    scene.name = fmt::format("lattice{}.nff", size);
+    scene.background = {0.078, 0.361, 0.753};
+    scene.view = view_of_lattice(size);
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double place : {2, -1}) {
+            Vec3 position(0.5);
+            position[axis] = place;
+            scene.lights.push_back({position, {}});
+        }
+    scene.surfaces = {{{0.9, 0.9, 0.9}, 0.5, 0.5, 3.0827, 0, 0, {}}};
+    for (const Colour& colour : {Colour(0.9, 0.1, 0.1), Colour(0.1, 0.9, 0.1), Colour(0.1, 0.1, 0.9)})
+        scene.surfaces.push_back({colour, 0.99, 0, 100000, 0, 0, {}});
+    for (int x = 0; x <= size; ++x)
+        for (int y = 0; y <= size; ++y)
+            for (int z = 0; z <= size; ++z) add_node(scene, size, {x, y, z});
+    share_surfaces(scene);
+    return scene;
+}
+
+}  // namespace raya

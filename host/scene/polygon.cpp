@@ -1,0 +1,85 @@
+#include "host/scene/polygon.hpp"
+
+#include <Imath/ImathVec.h>
+
+#include <cmath>
+#include <cstddef>
+
+namespace raya {
+namespace {
+
+using Vec2 = Imath::V2d;
+
+/// Twice the signed area of a triangle, > 0 where it runs counter-clockwise.
+double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) { return (b - a).cross(c - a); }
+
+/// The vertices in the plane's two coordinates, mirrored where needed so that they run counter-clockwise.
+std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& normal) {
+    const int axis = dropped_axis(normal);
+    const int first = axis == 0 ? 1 : 0;
+    const int second = axis == 2 ? 1 : 2;
+    std::vector<Vec2> flat;
+    for (const Vec3& v : vertices) flat.emplace_back(v[first], v[second]);
+    double area = 0;
+    for (std::size_t i = 2; i < flat.size(); ++i) area += doubled_area(flat[0], flat[i - 1], flat[i]);
+    if (area < 0)
+        for (Vec2& v : flat) v.x = -v.x;
+    return flat;
+}
+
+/// A corner is an ear where it is convex and no other vertex lies in its triangle. Vertices on its border count as
+/// inside, so that no ear leaves a flat rest behind; those that coincide with a corner (the two sides of a cut that
+/// joins a hole to the outline) do not.
+bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& rest, const std::array<int, 3>& corner) {
+    const auto at = [&](int i) { return flat[static_cast<std::size_t>(i)]; };
+    const Vec2 a = at(corner[0]), b = at(corner[1]), c = at(corner[2]);
+    if (doubled_area(a, b, c) <= 0) return false;
+    for (const int i : rest) {
+        const Vec2 p = at(i);
+        if (p == a || p == b || p == c) continue;
+        if (doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+Vec3 newell_normal(const std::vector<Vec3>& vertices) {
+    Vec3 sum(0, 0, 0);
+    // Taken about the first vertex, not the origin: a small polygon far out keeps its digits.
+    for (std::size_t i = 2; i < vertices.size(); ++i)
+        sum += (vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]);
+    return sum;
+}
+
+int dropped_axis(const Vec3& normal) {
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::abs(normal[i]) > std::abs(normal[axis])) axis = i;
+    return axis;
+}
+
+std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, const Vec3& normal) {
+    const std::vector<Vec2> flat = flattened(vertices, normal);
+    std::vector<int> rest;
+    for (std::size_t i = 0; i < vertices.size(); ++i) rest.push_back(static_cast<int>(i));
+    const auto corner = [&](std::size_t i) {
+        const std::size_t n = rest.size();
+        return std::array<int, 3>{rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]};
+    };
+    std::vector<std::array<int, 3>> triangles;
+    while (rest.size() >= 3) {
+        std::size_t ear = 1;  // of a triangle, and of an outline without ears: gives (0, 1, 2)
+        if (rest.size() > 3)
+            for (std::size_t i = 0; i < rest.size(); ++i)
+                if (is_ear(flat, rest, corner(i))) {
+                    ear = i;
+                    break;
+                }
+        triangles.push_back(corner(ear));
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
+    }
+    return triangles;
+}
+
+}  // namespace raya

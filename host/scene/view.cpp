@@ -1,0 +1,87 @@
+#include "host/scene/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/scene/outline.hpp"
+#include "host/scene/split_mix.hpp"
+
+namespace raya {
+namespace {
+
+struct Direction {
+    double cosine, sine;
+};
+
+Direction direction_at(double degrees) {
+    const double quarter = std::round(degrees / 90), rest = (degrees - 90 * quarter) * std::numbers::pi / 180;
+    const double c = std::cos(rest), s = std::sin(rest);
+    switch (static_cast<int>(std::fmod(quarter, 4) + 4) % 4) {
+        case 1:
+            return {-s, c};
+        case 2:
+            return {-c, -s};
+        case 3:
+            return {s, -c};
+        default:
+            return {c, s};
+    }
+}
+
+double rounded(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+/// A disk at right angles to `axis`, which has length 1: along each coordinate it reaches as far as its radius times
+/// the sine of the angle between the two.
+void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis) {
+    Vec3 reach;
+    for (int i = 0; i < 3; ++i) reach[i] = std::abs(radius) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
+    box.extendBy(centre - reach);
+    box.extendBy(centre + reach);
+}
+
+}  // namespace
+
+// O. Rodrigues's formula.
+View turned(View view, double degrees) {
+    const double rest = std::fmod(degrees, 360);
+    if (rest == 0) return view;
+    const auto [cosine, sine] = direction_at(rest);
+    const Vec3 axis = view.up.normalized(), arm = view.from - view.at;
+    view.from = view.at + arm * cosine + axis.cross(arm) * sine + axis * (axis.dot(arm) * (1 - cosine));
+    return view;
+}
+
+Scene random_view(Scene scene, std::uint64_t seed) {
+    View& view = scene.view;
+    const Vec3 up = view.up.normalized(), arm = view.from - view.at;
+    const Vec3 other = std::abs(up.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    const Vec3 east = up.cross(other).normalized(), north = up.cross(east);
+    SplitMix random(seed);
+    // Heights are even on a sphere (Archimedes): its zones are as large as they are high.
+    const double height = random.uniform(std::sin(radians(kLowestView)), std::sin(radians(kHighestView)));
+    const double azimuth = random.uniform(0, 2 * std::numbers::pi), level = std::sqrt(1 - height * height);
+    const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * level;
+    view.from = view.at + Vec3(rounded(direction.x), rounded(direction.y), rounded(direction.z)) * arm.length();
+    return scene;
+}
+
+Imath::Box3d scene_box(const Scene& scene) {
+    Imath::Box3d box;
+    for (const Sphere& s : scene.spheres) {
+        box.extendBy(s.centre - Vec3(std::abs(s.radius)));
+        box.extendBy(s.centre + Vec3(std::abs(s.radius)));
+    }
+    for (const Polygon& p : scene.polygons)
+        for (const Vec3& v : p.vertices) box.extendBy(v);
+    for (const Cone& c : scene.cones) {
+        const Vec3 axis = unit_vector(c.apex - c.base);
+        extend_by_disk(box, c.base, c.base_radius, axis);
+        extend_by_disk(box, c.apex, c.apex_radius, axis);
+    }
+    return box;
+}
+
+}  // namespace raya

@@ -1,0 +1,149 @@
+// What nodes tell the host: the census of a superstep, how packets come over links quickest, and messages for a
+// trace.
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "host/torus/node_array.hpp"
+
+namespace raya {
+namespace {
+
+std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
+    return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
+}
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kPackets = 32;  // in each box of a measurement
+constexpr int kTimes = 5;               // of which the shortest counts
+
+bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
+
+// Whether a packet in an outbox is a message that its node has made.
+bool is_new_message(const raya_head& packet) {
+    return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
+}
+
+PacketRecord record_of(const TorusSettings& settings, std::uint32_t superstep, std::uint32_t node,
+                       const raya_head& packet) {
+    PacketRecord record{.superstep = superstep,
+                        .source = node,
+                        .destination = RAYA_ROOT,
+                        .head = packet,
+                        .words = settings.packets.return_words()};
+    if (is_return(packet)) return record;
+    record.words = settings.packets.ray_words;
+    const raya_torus& torus = settings.torus;
+    const raya_place v = raya_unpack_place(packet.voxel);
+    record.destination =
+        raya_node_of(torus, v.at[0] % torus.nodes[0], v.at[1] % torus.nodes[1], v.at[2] % torus.nodes[2]);
+    return record;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes) {
+    std::vector<std::uint64_t> cycles;
+    for (std::uint32_t node = 0; node < nodes; ++node) cycles.push_back(cycles_of(status, node));
+    return cycles;
+}
+
+Census census_of(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
+    Census c;
+    std::uint64_t rows = 0, done = 0;
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+        const auto at = [&](std::uint32_t word) { return status.at(node, word); };
+        c.live += at(RAYA_STATUS_QUEUE) + at(RAYA_STATUS_HOST);
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            c.live += at(RAYA_STATUS_OUTBOX + link) + at(RAYA_STATUS_INBOX + link) +
+                      at(RAYA_STATUS_RETURN_OUTBOX + link) + at(RAYA_STATUS_RETURN_INBOX + link);
+        c.fullest = std::max(c.fullest, at(RAYA_STATUS_QUEUE));
+        c.full += at(RAYA_STATUS_QUEUE) >= capacity;
+        c.progress += at(RAYA_STATUS_PROGRESS);
+        c.cycles = std::max(c.cycles, cycles_of(status, node));
+        c.all_made &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
+        rows += at(RAYA_STATUS_ROWS);
+        done += at(RAYA_STATUS_NEXT_ROW);
+    }
+    c.looked = rows ? static_cast<double>(done) / static_cast<double>(rows) : 1;
+    return c;
+}
+
+// On CPUs the kernel was faster, or as fast (docs/tuning.md has figures): there nothing is measured.
+void NodeArray::choose_link_move(Kernels& kernels) {
+    const LinkMove wanted = settings_.kernels.link_move;
+    const bool cpu = session_.device().type == "cpu";
+    links_origin_ = wanted != LinkMove::kOfDevice ? settings_.kernels.link_origin : cpu ? "defaults" : "measured";
+    if (wanted == LinkMove::kCopies) return;
+    const auto kernel = kernels.get<ExchangeKernel>();
+    if (wanted == LinkMove::kKernel || cpu) return use_kernel(kernel);
+    const double by_copies = exchange_seconds();
+    use_kernel(kernel);
+    if (exchange_seconds() < by_copies) return;
+    rays_.use_copies();
+    homeward_.use_copies();
+    links_by_kernel_ = false;
+}
+
+void NodeArray::use_kernel(const ExchangeKernel& kernel) {
+    rays_.use_kernel(kernel, options_.group_size, status_);
+    homeward_.use_kernel(kernel, options_.group_size, status_);
+    links_by_kernel_ = true;
+}
+
+// Of an exchange over all links, with some packets in every outbox. What is counted and moved is forgotten by clear().
+double NodeArray::exchange_seconds() {
+    const std::uint32_t packets = std::min(kPackets, buffers_.box);
+    NodeStatus status(raya_nodes(settings_.torus));
+    for (std::uint32_t node = 0; node < raya_nodes(settings_.torus); ++node) {
+        const auto put = [&](std::uint32_t word) {
+            status.words[std::size_t{node} * RAYA_STATUS_WORDS + word] = packets;
+        };
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            if (settings_.torus.sides[link / 2] > 1) put(RAYA_STATUS_OUTBOX + link);
+        if (node != RAYA_ROOT) put(RAYA_STATUS_RETURN_OUTBOX + raya_home_link(settings_.torus, node));
+    }
+    for (std::uint32_t slot = 0; slot < nodes_; ++slot)
+        session_.write(
+            "measure links", status_,
+            std::span(status.words).subspan(std::size_t{share_.own()[slot]} * RAYA_STATUS_WORDS, RAYA_STATUS_WORDS),
+            std::size_t{slot} * RAYA_STATUS_WORDS);
+    rays_.clear();
+    homeward_.clear();
+    std::vector<std::uint64_t> words(std::size_t{raya_nodes(settings_.torus)} * RAYA_LINKS);
+    double least = std::numeric_limits<double>::max();
+    for (int i = 0; i <= kTimes; ++i) {
+        session_.finish();
+        const Clock::time_point start = Clock::now();
+        rays_.exchange(status, words);
+        homeward_.exchange(status, words);
+        session_.finish();
+        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        if (i > 0) least = std::min(least, seconds);  // the first one may build the kernel
+    }
+    return least;
+}
+
+void NodeArray::record(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
+    if (!sink) {
+        rays_.visit_new(status, {});
+        return homeward_.visit_new(status, {});
+    }
+    std::vector<PacketRecord> own;
+    const auto take = [&](std::uint32_t node, const raya_head& packet) {
+        if (is_new_message(packet)) own.push_back(record_of(settings_, superstep, node, packet));
+    };
+    rays_.visit_new(status, take);
+    homeward_.visit_new(status, take);
+    std::vector<PacketRecord> records = ranks_.many() ? records_of_all(own) : std::move(own);
+    std::stable_sort(records.begin(), records.end(),
+                     [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
+    for (const PacketRecord& record : records) sink(record);
+}
+
+std::vector<PacketRecord> NodeArray::records_of_all(const std::vector<PacketRecord>& own) {
+    return ranks_.gather(std::span(own), ranks_.all_gather(own.size()));
+}
+
+}  // namespace raya

@@ -1,0 +1,123 @@
+#include "host/torus/torus_result.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "host/model/t805.hpp"
+#include "kernels/shared/traffic.h"
+
+namespace raya {
+namespace {
+
+constexpr std::uint64_t kWordBytes = sizeof(std::uint32_t);
+
+std::uint64_t launches_of(const TorusResult& result, const std::string& label) {
+    std::uint64_t launches = 0;
+    for (const LabelSummary& c : result.commands)
+        if (c.label == label && c.kind == "kernel") launches += c.launches;
+    return launches;
+}
+
+// Bytes of the packets of these counts.
+std::uint64_t packet_bytes(const PacketCounts& made) {
+    std::uint64_t words = 0;
+    for (std::uint32_t kind = RAYA_KIND_PRIMARY; kind < RAYA_KINDS; ++kind)
+        words += made[kind] * raya_packet_words(kind);
+    return kWordBytes * words;
+}
+
+// What stepwise hides: see the header. The shortest packets are the worst case.
+constexpr std::uint32_t kWords = PacketCharge::kWholeReturnWords;
+static_assert(kWords < RAYA_RETURN_WORDS);
+static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kWords + kT805MessageCycles) * kT805CycleNs <
+              kWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
+
+double cycles_ms(std::uint64_t cycles) { return 1e-6 * kT805CycleNs * static_cast<double>(cycles); }
+
+// Processor's cycles for messages: of each node, what it sends and what it receives.
+std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusResult& result) {
+    std::vector<std::uint64_t> cycles(raya_nodes(torus));
+    for (std::uint32_t node = 0; node < cycles.size(); ++node)
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
+            const std::size_t at = std::size_t{node} * RAYA_LINKS + link;
+            const std::uint64_t one_end = t805_message_cycles(result.link_packets[at], result.link_words[at]);
+            cycles[node] += one_end;
+            cycles[raya_link_end(torus, node, link)] += one_end;
+        }
+    return cycles;
+}
+
+// Link 2 d of a node and link 2 d + 1 of the node at its end are the two ways of one wire.
+double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
+    double most = 0;
+    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node)
+        for (std::uint32_t up = 0; up < RAYA_LINKS; up += 2) {
+            const std::size_t back = std::size_t{raya_link_end(torus, node, up)} * RAYA_LINKS + up + 1;
+            most = std::max(
+                most, t805_link_ms(result.link_words[std::size_t{node} * RAYA_LINKS + up], result.link_words[back]));
+        }
+    return most;
+}
+
+double stepwise_ms(const std::vector<Superstep>& supersteps) {
+    double sum = 0;
+    for (const Superstep& step : supersteps)
+        sum += cycles_ms(step.most_cycles) + t805_link_ms(step.most_link_words, step.most_link_words);
+    return sum;
+}
+
+}  // namespace
+
+Standstill::Standstill(const StandstillFigures& stand, const std::string& remedy)
+    : UserError(fmt::format("{}: the machine stands still in superstep {}: {} packets wait for each other, {} of {} "
+                            "queues are full at {} packets; {}",
+                            stand.scene, stand.superstep, stand.live, stand.full, stand.nodes, stand.queue, remedy)),
+      figures(stand) {}
+
+std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
+    const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
+    EventCounts primary{}, others = r.events;
+    for (const std::size_t made : {RAYA_PRIMARY, RAYA_DISCARDED}) primary[made] = std::exchange(others[made], 0);
+    PacketCounts rays{}, followers = r.made;
+    rays[RAYA_KIND_PRIMARY] = std::exchange(followers[RAYA_KIND_PRIMARY], 0);
+    const auto opened = [&](const char* label) { return launches_of(r, label) * kWordBytes * r.copied_words; };
+
+    KernelWork inject = work_of("inject", primary), trace = work_of("trace_voxel", others);
+    inject.bytes = opened("inject") + packet_bytes(rays);
+    trace.bytes =
+        opened("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] + packet_bytes(followers);
+    trace.rays += primary[RAYA_PRIMARY];  // it traces those, too
+    KernelWork route, accept, compose;
+    route.label = "route";
+    route.bytes = opened("route") +
+                  2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
+    accept.label = "accept";
+    accept.bytes = 2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.moved_returns * RAYA_RETURN_WORDS);
+    compose.label = "compose";  // of each contribution three multiply-adds
+    compose.operations = 3 * r.contributions;
+    compose.bytes = r.contributions * 4 * sizeof(float) + kWordBytes * (pixels + 1) + 3 * sizeof(float) * pixels;
+    return {inject, trace, route, accept, compose};
+}
+
+TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
+    const std::size_t nodes = raya_nodes(torus), links = nodes * RAYA_LINKS;
+    if (result.load.per_pe.size() != nodes || result.link_words.size() != links || result.link_packets.size() != links)
+        throw std::invalid_argument("torus_time: the result is of another torus");
+    const std::vector<std::uint64_t> messages = message_cycles(torus, result);
+    std::uint64_t processor = 0;
+    for (std::size_t node = 0; node < nodes; ++node)
+        processor = std::max(processor, result.load.per_pe[node] + messages[node]);
+    TorusTime time;
+    time.compute_ms = cycles_ms(result.load.max);
+    time.messages_ms = cycles_ms(*std::max_element(messages.begin(), messages.end()));
+    time.processor_ms = cycles_ms(processor);
+    time.links_ms = busiest_link_ms(torus, result);
+    time.overlapped_ms = std::max(time.processor_ms, time.links_ms);
+    time.stepwise_ms = stepwise_ms(result.supersteps);
+    return time;
+}
+
+}  // namespace raya

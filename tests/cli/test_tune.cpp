@@ -1,0 +1,133 @@
+// raya tune: candidates that are wrong, fail, crash or hang are dropped; what is kept is taken by renders.
+#include <set>
+
+#include "tests/cli/failing_device.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+#include "tests/kernels/write_kernels.hpp"
+
+namespace raya {
+namespace {
+namespace fs = std::filesystem;
+
+/// A device whose own lanes are 4, and a cache folder.
+Surroundings tuned_in(const ScratchFolder& cache) {
+    Surroundings around = failing_device("clGetDeviceInfo 4154 4");
+    around.variables.emplace_back("XDG_CACHE_HOME", cache.path());
+    around.variables.emplace_back("RAYA_TUNED", "");
+    around.variables.emplace_back("RAYA_BUILD_OPTIONS", "-cl-opt-disable");  // compiled sooner
+    return around;
+}
+
+// One fault for each value of a knob beside the defaults; eight lanes are not built.
+const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);",
+                             R"(#if RAYA_LANES == 8
+#error "no eight lanes"
+#elif RAYA_GROUP == 2
+    value = vec_add(value, value);
+#elif !RAYA_WORDS_LOCAL
+    *(volatile __global int*)0 = 1;
+#elif RAYA_SPHERE_BATCH == 8
+    for (volatile int turns = 1; turns != 0;) continue;
+#endif
+    t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);)"};
+
+/// How candidates with this value ended, of a T4 report.
+std::set<std::string> ends_with(const Document& report, const std::string& knob, std::uint32_t value) {
+    std::set<std::string> ends;
+    for (const Document& one : report["results"])
+        if (one["configuration"][knob] == value) ends.insert(one["invalidity"]);
+    return ends;
+}
+
+TEST_CASE("candidates that fail, crash, hang or make another image are dropped, and renders take what is left",
+          "[cli]") {
+    const ScratchFolder kernels, cache, outputs;
+    const std::string copy = write_kernels(kernels / "kernels", {kFaults}), report = outputs / "t4.json";
+    const Surroundings around = tuned_in(cache);
+    const RunOutcome run = run_raya({"tune", "--variants", "none", "--format", "fp32", "--size", "16", "--pes", "1",
+                                     "--candidate-seconds", "12", "--kernel-dir", copy, "--report", report},
+                                    around);
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK_FALSE(contains(run.err, "raya: "));  // compilers speak there
+    const Document t4 = Document::parse(file_contents(report));
+    using Ends = std::set<std::string>;
+    CHECK(ends_with(t4, "lanes", 8) == Ends{"compile"});
+    CHECK(ends_with(t4, "group", 2) == Ends{"correctness"});
+    CHECK(ends_with(t4, "local_words", 0) == Ends{"runtime"});
+    CHECK(ends_with(t4, "batch", 8) == Ends{"timeout"});
+    CHECK(ends_with(t4, "lanes", 1) == Ends{"correct"});
+    for (const char* part : {"ring none fp32", "not built: ", "wrong: another image",
+                             "failed: ended by signal 11 (SIGSEGV)", "too long: not done in 12 s", "kept in "})
+        CHECK_THAT(run.out, Catch::Contains(part));
+
+    REQUIRE(std::distance(fs::directory_iterator(cache / "raya"), {}) == 1);
+    const std::string file = fs::directory_iterator(cache / "raya")->path();
+    const Document kept = Document::parse(file_contents(file))["tuned"];
+    REQUIRE(kept.size() == 1);
+    CHECK((kept[0]["machine"] == "ring" && kept[0]["accel"] == "none" && kept[0]["format"] == "fp32"));
+    const auto lanes = kept[0]["values"]["lanes"].get<int>();
+    CHECK((lanes == 1 || lanes == 4));
+    CHECK(
+        (kept[0]["values"]["group"] == 1 && kept[0]["values"]["local_words"] == 1 && kept[0]["values"]["batch"] == 0));
+
+    const auto rendered = [&](const Words& more) {
+        Words words = {
+            "render", scene_file("spheres"), "-o",     outputs / "x.pfm", "--size", "16",       "--pes",
+            "4",      "--machine",           "grande", "--accel",         "none",   "--report", outputs / "r.json"};
+        words.insert(words.end(), more.begin(), more.end());
+        const RunOutcome render = run_raya(words, around);
+        INFO(render.told());
+        REQUIRE(render.code == 0);
+        CHECK(contains(render.out, "\ntuned   " + file) == more.empty());
+        return Document::parse(file_contents(outputs / "r.json"));
+    };
+    const Document tuned = rendered({}), defaults = rendered({"--no-tuned"}), options = rendered({"--lanes", "4"});
+    CHECK_THAT(tuned["device"]["tuned"].get<std::string>(), Catch::StartsWith(file + ", 20"));
+    CHECK(tuned["device"]["lanes"] == lanes);
+    CHECK(defaults["device"]["tuned"] == "defaults");
+    CHECK(options["device"]["tuned"] == "options");
+    CHECK(tuned["image"]["hash"] == defaults["image"]["hash"]);
+    CHECK(tuned["warnings"].empty());
+
+    std::ofstream(file) << "{";
+    const Document damaged = rendered({"--no-tuned"});
+    CHECK(damaged["warnings"].empty());
+    const RunOutcome warned =
+        run_raya({"render", scene_file("spheres"), "-o", outputs / "x.pfm", "--size", "16", "--pes", "4", "--machine",
+                  "grande", "--accel", "none", "--report", outputs / "r.json"},
+                 around);
+    CHECK(warned.code == 0);
+    CHECK_THAT(warned.err, Catch::Contains("raya: warning: " + file + ":1: not valid JSON"));
+    CHECK(Document::parse(file_contents(outputs / "r.json"))["warnings"].size() == 1);
+}
+
+TEST_CASE("a device whose defaults fail is not tuned", "[cli]") {
+    const ScratchFolder kernels, cache, outputs;
+    const std::string copy =
+        write_kernels(kernels / "kernels", {{"shading/tree.clh", "#ifndef RAYA_TREE_CLH\n", "#error \"none\"\n"}});
+    const RunOutcome run =
+        run_raya({"tune", "--variants", "none", "--size", "8", "--pes", "4", "--kernel-dir", copy}, tuned_in(cache));
+    INFO(run.told());
+    CHECK(run.code == 3);
+    CHECK_THAT(run.err,
+               Catch::Contains("ring none fp32: the defaults cannot be measured") && Catch::Contains("raya verify"));
+    CHECK(std::distance(fs::directory_iterator(cache / "raya"), {}) == 0);
+}
+
+TEST_CASE("tune refuses what it cannot do in one line", "[cli]") {
+    const ScratchFolder outputs;
+    const auto refused = [&](Words words, const Words& parts) { check_refused(outputs, words, 2, parts); };
+    refused({"tune", "--lanes", "4"}, {"tune: no option --lanes"});
+    refused({"tune", "--seconds", "0"}, {"--seconds 0", "1..86400 seconds"});
+    refused({"tune", "--candidate-seconds", "1e9"}, {"--candidate-seconds", "1..3600 seconds"});
+    refused({"tune", "--variants", "octree"}, {"--variants octree", "none, grid, bvh or torus"});
+    refused({"tune", "--size", "0"}, {"--size 0"});
+    refused({"tune", "--size", "20000"}, {"--size 20000x20000", "1..16384 pixels"});
+    check_refused(outputs, {"tune"}, 2, {"XDG_CACHE_HOME", "HOME"},
+                  {.variables = {{"XDG_CACHE_HOME", ""}, {"HOME", ""}}});
+}
+
+}  // namespace
+}  // namespace raya

@@ -1,0 +1,76 @@
+// What was tried, as the T4 schema has it.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "host/tune/tune.hpp"
+#include "tests/document.hpp"
+
+namespace raya {
+namespace {
+
+Trial trial_of(Fate fate) {
+    Trial trial;
+    trial.fate = fate;
+    trial.when = "2026-11-22T23:59:59Z";
+    trial.build_s = 0.5;
+    if (fate == Fate::kCorrect) trial.samples = {{0.2, 0.1, 0.3}, {0.08, 0.1, 0.24}};
+    return trial;
+}
+
+TEST_CASE("a report has what results-schema.json 1.0.0 asks of it", "[tune]") {
+    Tuning tuning;
+    tuning.workload = usual_workloads().front();
+    tuning.space = space_of({}, tuning.workload.what());
+    for (const Fate fate :
+         {Fate::kCorrect, Fate::kCompile, Fate::kRuntime, Fate::kCorrectness, Fate::kTimeout, Fate::kUnfinished})
+        tuning.trials.push_back(trial_of(fate));
+    const Document report = Document::parse(t4_text({}, {tuning}));
+    CHECK(report["schema_version"] == "1.0.0");
+    CHECK(report["metadata"]["timeunit"] == "milliseconds");
+    const Document& results = report["results"];
+    REQUIRE(results.size() == 5);  // of one nothing is known
+    std::vector<std::string> ends;
+    for (const Document& one : results) {
+        for (const char* key : {"configuration", "times", "invalidity", "correctness"}) CHECK(one.contains(key));
+        ends.push_back(one["invalidity"]);
+        CHECK(one["configuration"]["workload"] == "ring none fp32");
+        CHECK(one["configuration"].size() == 1 + tuning.space.knobs.size());
+        for (const Knob& knob : tuning.space.knobs) CHECK(one["configuration"][knob.name()].is_number_unsigned());
+        CHECK(one["correctness"] == (one["invalidity"] == "correctness" ? 0 : 1));
+        CHECK(one["times"]["compilation_time"] == 500.0);
+        for (const Document& measured : one["measurements"])
+            CHECK((measured["name"].is_string() && measured["value"].is_number() && measured["unit"].is_string()));
+    }
+    CHECK(ends == std::vector<std::string>{"correct", "compile", "runtime", "correctness", "timeout"});
+    CHECK(results[0]["times"]["runtimes"].size() == 3);
+    CHECK(results[0]["measurements"][0]["value"].get<double>() == Approx(80));
+}
+
+TEST_CASE("the best wins surely by nearly all pairs, or the defaults stay", "[tune]") {
+    Trial trial = trial_of(Fate::kCorrect);
+    const std::vector<double> defaults(9, 0.1), better(9, 0.09);
+    trial.samples = {defaults, better};
+    CHECK(wins_surely(trial));
+    trial.samples[1][4] = 0.2;  // one disturbed
+    CHECK(wins_surely(trial));
+    trial.samples[1][7] = 0.2;
+    CHECK_FALSE(wins_surely(trial));
+    trial.samples = {defaults, std::vector<double>(9, 0.099)};  // within the noise
+    CHECK_FALSE(wins_surely(trial));
+    CHECK_FALSE(wins_surely(trial_of(Fate::kCorrectness)));
+}
+
+TEST_CASE("a candidate wins by its least time and by the median of pairs, or not", "[tune]") {
+    const Trial wins = trial_of(Fate::kCorrect);  // 0.08 of 0.1; 0.4, 1.0, 0.8
+    CHECK(ratio_of(wins) == Approx(0.8));
+    Trial one_spike = wins;
+    one_spike.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // the least is half, the median is not
+    CHECK(ratio_of(one_spike) == Approx(1.0));
+    Trial disturbed = wins;
+    disturbed.samples = {{0.1, 0.4, 0.4}, {0.2, 0.2, 0.2}};  // pairs say half, the least does not
+    CHECK(ratio_of(disturbed) == Approx(2.0));
+    CHECK(ratio_of(trial_of(Fate::kTimeout)) == 1);
+}
+
+}  // namespace
+}  // namespace raya
