@@ -8,8 +8,8 @@ import pytest
 raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
 from raya.lab.laboratory import Costs, Ensemble  # noqa: E402
 from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED, estimate  # noqa: E402
-from raya.lab.studies import (best_offset, images, imbalance, loads, objects, offsets_beyond, scale, speedup,  # noqa: E402
-                              static_vs_dynamic, table2, table3)
+from raya.lab.studies import (best_offset, images, imbalance, loads, objects, offsets_beyond,  # noqa: E402
+                              scale, speedup, static_vs_dynamic, table2, table3)
 
 SEED, SIDE = 32, 64
 VERDICTS = {"yes": REPRODUCED, "no": NOT_REPRODUCED, "?": UNDECIDED}
@@ -162,7 +162,8 @@ def test_whole_job(balance, word):
 
 
 def choice(near, count=20):
-    """A choice of an offset of 16 PEs, of which the best of 0..sqrt(P) takes about `near` % longer than the best of all."""
+    """A choice of an offset of 16 PEs, of which the best of 0..sqrt(P) takes about `near` % longer than the best of
+    all."""
     def longer(offset, confidence=0.95):
         random = np.random.default_rng(SEED)
         return estimate(near + random.normal(0, 0.1, count), confidence)

@@ -20,20 +20,22 @@ from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED
 
 OPEN_ROWS, MOST_ROWS = 24, 400  # of a table that is shown unfolded, and that is shown at all
 
+# No script, nothing from elsewhere.
+POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 ABOUT = {
     "title": "The load laboratory",
     "question": "What do the papers on two array machines that trace rays say, which of it is seen when their machines "
                 "are modelled again, and what lies beyond?",
     "method": [
-        "Kohata & Ito 1993 divide the screen: 256 processors on a ring and a bus, the SPA, share the pixels by a cyclic "
-        "mapping. Yoshitani & Yamazaki, about 1995, divide space: 64 transputers on a torus hold a voxel each, and rays "
-        "travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids, with which raya's "
-        "are compared.",
+        "Kohata & Ito 1993 divide the screen: 256 processors on a ring and a bus, the SPA, share the pixels by a "
+        "cyclic mapping. Yoshitani & Yamazaki, about 1995, divide space: 64 transputers on a torus hold a voxel each, "
+        "and rays travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids, with "
+        "which raya's are compared.",
         "Both machines are models that run as OpenCL kernels. The image is the same, bit for bit, whatever machine and "
         "mapping make it. Loads, packets and tests are counted where they happen; times are modelled from these counts "
         "unless a page calls them measured.",
-        "A claim is what a paper says. It is reproduced or not by a rule over the figures next to it; it cannot be told "
-        "where the paper leaves out what decides it, or where our interval holds both answers.",
+        "A claim is what a paper says. It is reproduced or not by a rule over the figures next to it; it cannot be "
+        "told where the paper leaves out what decides it, or where our interval holds both answers.",
         "A paper's figure that is marked as derived is arithmetic on printed ones. After +- stands the half width of a "
         "95 % confidence interval by Student's t.",
     ],
@@ -188,10 +190,10 @@ def environment():
                               autoescape=jinja2.select_autoescape(["html.j2"]), lstrip_blocks=True,
                               undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
     made.filters.update(prose=prose, markdown_table=markdown_table, classes=classes_of)
-    made.globals.update(about=ABOUT, cells_of_comparisons=cells_of_comparisons, cells_of_points=cells_of_points,
-                        title_of_comparisons=title_of_comparisons, cells_of_table=cells_of_table, len=len,
-                        lines_of_run=lines_of_run, verdict_sentences=verdict_sentences, OPEN_ROWS=OPEN_ROWS,
-                        MOST_ROWS=MOST_ROWS, not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
+    made.globals.update({one.__name__: one for one in (
+        cells_of_comparisons, cells_of_points, cells_of_table, len, lines_of_run, title_of_comparisons,
+        verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS, MOST_ROWS=MOST_ROWS,
+        not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
     return made
 
 

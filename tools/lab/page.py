@@ -1,5 +1,5 @@
 """What a study has found, as plain data: from this its files and its part of the document are made."""
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Optional
 
 import numpy as np
@@ -67,6 +67,11 @@ class Comparison:
     remark: str = ""
     derived: bool = False  # the paper's is arithmetic on printed figures
     half_width: Optional[float] = None
+
+
+def with_paper(in_paper, comparisons):
+    """The paper's figures are left out where a study is not made as the paper made it."""
+    return comparisons if in_paper else [replace(one, paper=None) for one in comparisons]
 
 
 @dataclass

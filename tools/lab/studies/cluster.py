@@ -68,8 +68,8 @@ def cluster(lab, scenes):
         digits = 3 if paper < 10 else 0
         return Claim(papers.SPA, place, f"{what}: {paper:.{digits}f}{' ' if unit else ''}{unit}.",
                      verdict_among(paper, rows[column]),
-                     f"Of {len(rows)} scenes ours is {estimate(rows[column]).text(digits)} in the mean; another scene's "
-                     f"lies in {prediction_text(rows[column], digits)} with 95 %.")
+                     f"Of {len(rows)} scenes ours is {estimate(rows[column]).text(digits)} in the mean; another "
+                     f"scene's lies in {prediction_text(rows[column], digits)} with 95 %.")
 
     seeds = f"1..{VIEWS}"
     paper = [Series("Kohata & Ito, from their tables", [papers.IMBALANCE_0], [papers.IMBALANCE_16], "paper")]

@@ -4,18 +4,18 @@ import pandas as pd
 import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, each_of, estimate, papers,
                       prediction_text, range_text, settings_of_pass, study, verdict, verdict_among)
-from raya.lab.lattice import shortest_vector
+from raya.lab.laboratory import VIEWS_PROSE
+from raya.lab.mappings import shortest_vector
+
+U_AND_VIEWS = """
+- u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
+  modelled cycles. No clock is needed.""" + VIEWS_PROSE
 
 PROSE_8 = """Fig. 8: imbalance against the offset
 
 Which offset of the cyclic mapping spreads the load best?
 
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass.
-- u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
-  modelled cycles. No clock is needed.
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
-  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %.
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass.""" + U_AND_VIEWS + """
 - Offsets are compared in the same views. "Best" is reproduced where every other offset of 0..n is worse, the {tests}
   differences together with 95 % (Bonferroni); it is not reproduced where one is better with that certainty.
 - A figure that Kohata & Ito have for one picture counts as reproduced where it lies in the 95 % prediction interval of
@@ -26,12 +26,7 @@ PROSE_13 = """Fig. 13: imbalance against the offset in supersampling
 
 Does the offset that suits the first pass suit supersampling as well?
 
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling alone.
-- u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
-  modelled cycles. No clock is needed.
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
-  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %.
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling alone.""" + U_AND_VIEWS + """
 - Offsets are compared in the same views, {tests} differences together with 95 % (Bonferroni)."""
 
 GOOD = 0.9  # ours: the part of all that an offset of 0..n gains over p = 0, from which on the balance is good
@@ -50,7 +45,7 @@ def page_of(name, lab, scenes, first):
         "p": offsets, "u": u, "mean u": mean, "+-": [m.half for m in means], "least u": of_views.min(0),
         "largest u": of_views.max(0), f"best of 0..{n} (views)": best.sum(0),
         "shortest vector (pixels)": [shortest_vector(p, size) for p in offsets]})
-    in_paper = first and papers.printed(True, scene, size)
+    in_paper = first and papers.is_papers(scene, size)
     near = rows[:n + 1]
     best_near = int(near["mean u"].idxmin())
     differences = [estimate(of_views[:, p] - of_views[:, n], each_of(n)) for p in range(n)]
@@ -60,8 +55,8 @@ def page_of(name, lab, scenes, first):
 
     why_best = (f"Over {len(views)} views mean u is {means[n].text()} at p = {n}; the lowest of 0..{n} is that of p = "
                 f"{best_near}, {means[best_near].text()}. Of the {n} other offsets {worse} are worse than p = {n} and "
-                f"{better} are better with certainty; p = {n} is the best of them in {best[:, n].sum()} of {len(views)} "
-                "views.")
+                f"{better} are better with certainty; p = {n} is the best of them in {best[:, n].sum()} of "
+                f"{len(views)} views.")
     gain = estimate(of_views[:, 0] - of_views[:, n])
     claims = [Claim(papers.SPA, place, "The cyclic mapping with p = n balances better than p = 0.",
                     verdict(gain.low > 0, gain.high <= 0),
@@ -80,8 +75,8 @@ def page_of(name, lab, scenes, first):
         claims.append(Claim(papers.SPA, place, "u is 0.118 at p = 16 (derived from Table 3).",
                             verdict_among(papers.IMBALANCE_16, of_views[:, n]),
                             f"Over {len(views)} views u(16) is {means[n].text()} in the mean and "
-                            f"{range_text(of_views[:, n])} in single ones, so the figure of one picture is a draw: with "
-                            f"95 % it lies in {prediction_text(of_views[:, n])}."))
+                            f"{range_text(of_views[:, n])} in single ones, so the figure of one picture is a draw: "
+                            f"with 95 % it lies in {prediction_text(of_views[:, n])}."))
 
     def at(p):
         return p % size

@@ -4,6 +4,7 @@ import pandas as pd
 import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, estimate, papers, range_text,
                       settings_of_pass, study, verdict)
+from raya.lab.laboratory import VIEWS_PROSE
 
 PROSE = """{figure}
 
@@ -11,10 +12,7 @@ PROSE = """{figure}
 
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; {phase}.
 - Loads are the sums of the modelled cycles that the kernels counted for each pixel, over the mean load of all PEs: no
-  clock is needed.
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
-  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %."""
+  clock is needed.""" + VIEWS_PROSE
 
 FLAT = 0.1  # ours: mean loads by which the middle may differ from the sides and yet be called flat
 
@@ -50,7 +48,7 @@ def page_of(name, lab, scenes, first):
         rows[f"{label}, mean of views"] = [m.mean for m in some]
         rows[f"{label}, +-"] = [m.half for m in some]
 
-    in_paper = first and papers.printed(True, scene, size)
+    in_paper = first and papers.is_papers(scene, size)
     figure = papers.IMBALANCE_0 if in_paper else None, papers.IMBALANCE_16 if in_paper else None
     remarks = ("calibrated on: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
     mean_u = [estimate(some) for some in u]

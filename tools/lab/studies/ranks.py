@@ -2,28 +2,27 @@
 
 How many MPI ranks are worth having, and from where on do they talk more than they trace?
 
-- Ring: {scene} at {size} x {size} with the 3 x 3 filter; a PE for each column, or for each rank where there are more ranks
-  than columns; p = 16, beyond that round(sqrt(P)). Torus: {torus_scene} at {torus_size} x {torus_size} on 8 x 8 x 8 nodes,
-  a voxel each, queues of 1024 packets.
+- Ring: {scene} at {size} x {size} with the 3 x 3 filter; a PE for each column, or for each rank where there are more
+  ranks than columns; p = 16, beyond that round(sqrt(P)). Torus: {torus_scene} at {torus_size} x {torus_size} on 8 x 8 x
+  8 nodes, a voxel each, queues of 1024 packets.
 - A rank is one core of this machine's CPU, or a device of its own where that is no CPU. One rank is measured: what its
   device takes for tracing, for all else, and the rest of the render, which is rank 0's host.
 - Ring on R ranks: tracing / R times (1 + u) of the ranks' segments, by the pixels' modelled cycles; all else / R; each
-  rotation alpha + beta for the block of one PE; pixels and loads of all ranks come to rank 0 one after another; the scene
-  goes out in log2 R rounds.
+  rotation alpha + beta for the block of one PE; pixels and loads of all ranks come to rank 0 one after another; the
+  scene goes out in log2 R rounds.
 - Torus on R ranks: bricks as `raya render` cuts them. In each superstep tracing is that of the rank with most modelled
-  cycles, all else goes with the nodes of the largest brick; faces take alpha for each message and beta for each byte that
-  a rank sends or receives, whichever is more, of the rank with most; the status of all nodes goes to every rank in log2 R
-  rounds. Supersteps, cycles and words of links are counted in one render.
-- More than 512 ranks have a torus with a node for each, assumed: nodes are cut further, so supersteps grow with its side,
-  a node's cycles in one shrink with its voxel and its words with a face of that, and rank 0's host looks at so many more
-  nodes.
-- Times of the model do not include what commands to the device cost beyond one rank's, collisions of messages, or waiting
-  for a rank that is late for another reason.
-- Networks: alpha and beta fitted to a ping-pong of `raya ping` (minimum of up to 300 turns for each of nine lengths, 1 B
-  to 4 MB), two that are assumed, and one that is given, where it is (`--network`). Measured: `mpirun -n R raya render`, up
-  to {turns} of each in turn after a warm-up, none after {enough} s of them, one thread a rank; the model is compared with
-  the minimum.
-"""
+  cycles, all else goes with the nodes of the largest brick; faces take alpha for each message and beta for each byte
+  that a rank sends or receives, whichever is more, of the rank with most; the status of all nodes goes to every rank in
+  log2 R rounds. Supersteps, cycles and words of links are counted in one render.
+- More than 512 ranks have a torus with a node for each, assumed: nodes are cut further, so supersteps grow with its
+  side, a node's cycles in one shrink with its voxel and its words with a face of that, and rank 0's host looks at so
+  many more nodes.
+- Times of the model do not include what commands to the device cost beyond one rank's, collisions of messages, or
+  waiting for a rank that is late for another reason.
+- Networks: alpha and beta fitted to a ping-pong of `raya ping` (minimum of up to 300 turns for each of nine lengths, 1
+  B to 4 MB), two that are assumed, and one that is given, where it is (`--network`). Measured: `mpirun -n R raya
+  render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one thread a rank; the model is
+  compared with the minimum. """
 import json
 import os
 import resource
@@ -37,7 +36,7 @@ import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, one_of, series_by, study
 from raya.lab.laboratory import Measured, format_for
-from raya.lab.torus import NO_LIMIT, even_scene, near_cube, sides_text
+from raya.lab.voxels import NO_LIMIT, even_scene, near_cube, powers, sides_text
 
 MOST, TURNS, ENOUGH_S, QUIET = 65_536, 3, 5, 0.05
 SIDES, QUEUE, STATUS_WORDS = (8, 8, 8), 1024, raya.STATUS_WORDS
@@ -47,8 +46,8 @@ LAUNCHER = shlex.split(os.environ.get("RAYA_MPIRUN", "mpirun --bind-to none"))
 
 def lacks():
     if not LAUNCHER or shutil.which(LAUNCHER[0]) is None:
-        return (f"cannot start {LAUNCHER[0] if LAUNCHER else 'RAYA_MPIRUN'}; remedy: install openmpi-bin or mpich, of the MPI "
-                "that raya was built with, or name another launcher in RAYA_MPIRUN")
+        return (f"cannot start {LAUNCHER[0] if LAUNCHER else 'RAYA_MPIRUN'}; remedy: install openmpi-bin or mpich, of "
+                "the MPI that raya was built with, or name another launcher in RAYA_MPIRUN")
     return ""
 
 
@@ -89,10 +88,6 @@ def look_around():
     return here, ping
 
 
-def powers(most):
-    return [1 << k for k in range(most.bit_length())]
-
-
 def rounds(ranks):
     return (ranks - 1).bit_length()
 
@@ -131,14 +126,15 @@ class Ring:
 
 
 class Torus:
-    """A torus of 8 x 8 x 8 nodes, counted in one render; beyond as many ranks, tori whose nodes have been cut further."""
+    """A torus of 8 x 8 x 8 nodes, counted in one render; beyond as many ranks, tori whose nodes have been cut
+    further."""
 
     name, label = "torus", "trace_voxel"
 
     def __init__(self, lab, scene, file, size):
         sides = sides_text(SIDES)
-        self.arguments = [file, "--machine", "torus", "--nodes", sides, "--voxels", sides, "--queue", str(QUEUE), "--size",
-                          str(size)]
+        self.arguments = [file, "--machine", "torus", "--nodes", sides, "--voxels", sides, "--queue", str(QUEUE),
+                          "--size", str(size)]
         self.ranks = powers(MOST)
         result = lab.render(scene, machine="torus", size=size, nodes=sides, voxels=sides, queue=QUEUE, packets=True,
                             pe_memory=NO_LIMIT)
@@ -147,7 +143,8 @@ class Torus:
         counted = {ranks: {**bricks(result, ranks), "status": status, "scene": words, "host": 1}
                    for ranks in powers(nodes)}
         self.parts = [counted[r] if r <= nodes else cut_further(counted[nodes], r // nodes) for r in self.ranks]
-        self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed" for r in self.ranks]
+        self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed"
+                       for r in self.ranks]
 
     def predict(self, i, one, network, processors):
         part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
@@ -206,8 +203,8 @@ def measure(machine, here, device):
     """{ranks: (seconds of each render, report of the fastest)}"""
     first = render_on_ranks(1, machine.arguments)  # which builds the kernels
     if first["device"]["name"] != device:
-        raise ValueError(f"study ranks runs on the default devices of its ranks, here {first['device']['name']}, and was given "
-                         f"{device}: leave --device out, or name the device in RAYA_DEVICE")
+        raise ValueError(f"study ranks runs on the default devices of its ranks, here {first['device']['name']}, and "
+                         f"was given {device}: leave --device out, or name the device in RAYA_DEVICE")
     trials = {ranks: ([], None) for ranks in here}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():
@@ -244,8 +241,8 @@ def ranks(lab, scenes):
     own_network = ping["alpha_s"], ping["beta_s_per_byte"]
     networks = {"this host": (own_network, f"fitted to the ping-pong, {ping['library']}"),
                 "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes"),
-                "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and what MPI "
-                                   "adds")}
+                "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and "
+                                   "what MPI adds")}
     if lab.network:
         networks["given"] = lab.network, "given with --network"
     rows, checks = [], []
@@ -257,8 +254,8 @@ def ranks(lab, scenes):
                 parts = machine.predict(i, one, network, count)
                 total = sum(parts.values())
                 rows.append({"machine": machine.name, "network": name, "ranks": count, "array": machine.arrays[i],
-                             **{f"{part} (ms)": 1e3 * seconds for part, seconds in parts.items()}, "time (ms)": 1e3 * total,
-                             "speed-up": one_s / total,
+                             **{f"{part} (ms)": 1e3 * seconds for part, seconds in parts.items()},
+                             "time (ms)": 1e3 * total, "speed-up": one_s / total,
                              "communication (%)": 100 * sum(parts[p] for p in PARTS[2:]) / total})
         on_processors = trial[1][1]["device"]["platform"] == "Portable Computing Language"
         for i, (count, (seconds, _)) in enumerate(trial.items()):
@@ -269,7 +266,8 @@ def ranks(lab, scenes):
             checks.append({"machine": machine.name, "ranks": count, "cores": cores, "predicted (ms)": predicted,
                            "measured, best (ms)": 1e3 * time.least, "median (ms)": 1e3 * time.median,
                            "largest (ms)": 1e3 * time.largest, "predicted / measured": predicted / time.least / 1e3,
-                           "remark": "ranks share cores" if cores < count else "the model rests on it" if count == 1 else ""})
+                           "remark": "ranks share cores" if cores < count else
+                           "the model rests on it" if count == 1 else ""})
     rows, checks = pd.DataFrame(rows), pd.DataFrame(checks)
     summary = pd.DataFrame([summary_of(*one) for one in rows.groupby(["machine", "network"], sort=False)])
     others = min(max((busy - own) / whole, 0), 1) if whole > 0 else 0
@@ -278,13 +276,15 @@ def ranks(lab, scenes):
                  "beta_s_per_byte": own_network[1]},
                 [*(finding_of_machine(summary, name) for name in ("ring", "torus")), finding_of_checks(checks),
                  finding_of_others(others), finding_of_network(ping)],
-                [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None, c["predicted / measured"],
+                [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / "
+                            "measured", "", None, c["predicted / measured"],
                             c["remark"]) for _, c in checks[checks["ranks"] > 1].iterrows()],
                 tables=tables_of(rows, checks, summary, networks, ping), plots=[*plots_of(rows, checks)],
-                news=["Neither paper has more than one machine to run on; here its array is divided over as many hosts as one "
-                      "likes, with the same image."],
-                clock="measured here where it says so, all else predicted from measured seconds of one rank. What a render "
-                "takes begins when its kernels are built and the scene has been sent; the time in all has the sending too.")
+                news=["Neither paper has more than one machine to run on; here its array is divided over as many hosts "
+                      "as one likes, with the same image."],
+                clock="measured here where it says so, all else predicted from measured seconds of one rank. What a "
+                "render takes begins when its kernels are built and the scene has been sent; the time in all has the "
+                "sending too.")
 
 
 def summary_of(key, some):
@@ -301,8 +301,8 @@ def finding_of_machine(summary, machine):
                        f"({r['network']})" for _, r in some.iterrows())
     fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
                         for _, r in some.iterrows())
-    return (f"{machine}: communication takes half of the time on {halves}. The fewest seconds are had on so many ranks: "
-            f"{fastest}.")
+    return (f"{machine}: communication takes half of the time on {halves}. The fewest seconds are had on so many "
+            f"ranks: {fastest}.")
 
 
 def finding_of_checks(checks):
@@ -313,23 +313,23 @@ def finding_of_checks(checks):
         return f"{ratio.min():.2f} to {ratio.max():.2f}" if len(some) else "(none)"
 
     shared = more["cores"] < more["ranks"]
-    return (f"On the ranks that can be measured here the prediction is {text(more[~shared])} times the measured time where "
-            f"each rank has a core, and {text(more[shared])} times where ranks share cores; the minimum of up to {TURNS} "
-            "renders each.")
+    return (f"On the ranks that can be measured here the prediction is {text(more[~shared])} times the measured time "
+            f"where each rank has a core, and {text(more[shared])} times where ranks share cores; the minimum of up to "
+            f"{TURNS} renders each.")
 
 
 def finding_of_others(share):
     if share <= QUIET:
         return f"While this was measured other programs had {100 * share:.1f} % of this host's processors."
-    return (f"While this was measured other programs had {100 * share:.0f} % of this host's processors: ranks waited for one "
-            "another, and times of several ranks say little. To be repeated when the host is quiet.")
+    return (f"While this was measured other programs had {100 * share:.0f} % of this host's processors: ranks waited "
+            "for one another, and times of several ranks say little. To be repeated when the host is quiet.")
 
 
 def finding_of_network(ping):
     first, last = ping["messages"][0], ping["messages"][-1]
     return (f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
-            f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte by the fit; one byte took {1e6 * first['seconds']:.2f} us, and 4 "
-            f"MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s.")
+            f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte by the fit; one byte took {1e6 * first['seconds']:.2f} us, "
+            f"and 4 MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s.")
 
 
 def tables_of(rows, checks, summary, networks, ping):
@@ -340,8 +340,8 @@ def tables_of(rows, checks, summary, networks, ping):
                 {"network": name, "alpha (us)": 1e6 * a, "beta (ns a byte)": 1e9 * b, "source": source}
                 for name, ((a, b), source) in networks.items()]),
             Table("ranks-messages", "Messages between two ranks here", [
-                {"bytes": m["bytes"], "measured (us)": 1e6 * m["seconds"], "fitted (us)": 1e6 * (alpha + beta * m["bytes"])}
-                for m in ping["messages"]]),
+                {"bytes": m["bytes"], "measured (us)": 1e6 * m["seconds"],
+                 "fitted (us)": 1e6 * (alpha + beta * m["bytes"])} for m in ping["messages"]]),
             Table("ranks-all", "Parts of the time on each number of ranks", rows, on_page=False)]
 
 
