@@ -199,19 +199,20 @@ def environment():
 
 def write_page(folder, page):
     """Writes all files of one study; returns its drawings for the document, as HTML by name."""
-    drawings = {}
+    drawings, files = {}, {}
     for table in page.tables:
-        write_whole(folder / f"{table.name}.csv", table.rows.to_csv(index=False, na_rep="-"))
+        files[f"{table.name}.csv"] = table.rows.to_csv(index=False, na_rep="-")
     for picture in page.pictures:
         drawings[picture.name] = base64.b64encode(picture.png).decode()
-        write_whole(folder / f"{picture.name}.png", picture.png)
+        files[f"{picture.name}.png"] = picture.png
     for plot in page.plots:
-        for kind, content in plots.files_of(plot).items():
-            write_whole(folder / f"{plot.name}.{kind}", content)
-            if kind == "svg":
-                drawings[plot.name] = inlined(content.decode())
-    write_whole(folder / f"{page.name}.json", json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n")
-    write_whole(folder / f"{page.name}.md", environment().get_template("page.md.j2").render(page=page))
+        drawn = plots.files_of(plot)
+        files.update({f"{plot.name}.{kind}": content for kind, content in drawn.items()})
+        drawings[plot.name] = inlined(drawn["svg"].decode())
+    files[f"{page.name}.json"] = json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n"
+    files[f"{page.name}.md"] = environment().get_template("page.md.j2").render(page=page)
+    for name, content in files.items():  # not before all of them could be made
+        write_whole(folder / name, content)
     return drawings
 
 

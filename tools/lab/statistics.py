@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-REPRODUCED, NOT_REPRODUCED, UNDECIDED = "reproduced", "not reproduced", "cannot be told"
+VERDICTS = REPRODUCED, NOT_REPRODUCED, UNDECIDED = "reproduced", "not reproduced", "cannot be told"
 PREDICTABLE = 39  # pictures; the least and the largest of fewer hold less than 95 %
 
 

@@ -60,7 +60,7 @@ def mpirun(ranks, threads, arguments):
     if run.returncode:
         said = [line for line in run.stderr.splitlines() if line.strip()]
         own = [line for line in said if line.startswith("raya: ")]
-        raise ValueError(f"{ranks} ranks: {(own or said or ['failed'])[-1]}")
+        raise raya.InputError(f"{ranks} ranks: {(own or said or ['failed'])[-1]}")
     return run.stdout
 
 
@@ -203,8 +203,8 @@ def measure(machine, here, device):
     """{ranks: (seconds of each render, report of the fastest)}"""
     first = render_on_ranks(1, machine.arguments)  # which builds the kernels
     if first["device"]["name"] != device:
-        raise ValueError(f"study ranks runs on the default devices of its ranks, here {first['device']['name']}, and "
-                         f"was given {device}: leave --device out, or name the device in RAYA_DEVICE")
+        raise raya.InputError(f"study ranks runs on the default devices of its ranks, here {first['device']['name']}, "
+                              f"and was given {device}: leave --device out, or name the device in RAYA_DEVICE")
     trials = {ranks: ([], None) for ranks in here}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():

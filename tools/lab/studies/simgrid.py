@@ -52,9 +52,10 @@ def ask_simgrid(result, changes):
         run = subprocess.run([program(), platform, replay, "--log=root.thres:error"], capture_output=True, text=True)
     words = run.stdout.split()
     if run.returncode or words[0::2] != ["finish_ms", "delivered"]:
-        raise ValueError(f"simgrid_replay: {(run.stderr.strip().splitlines() or ['it does not print its time'])[-1]}")
+        said = run.stderr.strip().splitlines() or ["it does not print its time"]
+        raise raya.InputError(f"simgrid_replay: {said[-1]}")
     if int(words[3]) != messages:
-        raise ValueError(f"simgrid_replay: {words[3]} of {messages} messages delivered")
+        raise raya.InputError(f"simgrid_replay: {words[3]} of {messages} messages delivered")
     return messages, float(words[1])
 
 
