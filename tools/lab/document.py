@@ -73,8 +73,13 @@ def plain(value):
     return value
 
 
+def rows_of(table):
+    """Each cell as its column has it: whole numbers stay whole."""
+    return list(table.rows.itertuples(index=False, name=None))
+
+
 def json_of(page):
-    tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": t.rows.values.tolist()}
+    tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": rows_of(t)}
               for t in page.tables]
     pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]
     comparisons = [{**plain(c), "ratio": plain(ratio(c))} for c in page.comparisons]
@@ -122,7 +127,7 @@ def cells_of_points(plot):
 
 
 def cells_of_table(table):
-    return [list(table.rows.columns)] + [[shown(cell) for cell in row] for row in table.rows.values.tolist()]
+    return [list(table.rows.columns)] + [[shown(cell) for cell in row] for row in rows_of(table)]
 
 
 def lines_of_run(page):
