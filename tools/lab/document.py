@@ -102,13 +102,16 @@ def cells_of_comparisons(page):
     def ours(c):
         return with_unit(shown(c.ours) + (f" +- {c.half_width:.2g}" if c.half_width else ""), c.unit)
 
+    def paper(c):
+        return "-" if c.paper is None else with_unit(shown(c.paper), c.unit) + (" (derived)" if c.derived else "")
+
+    columns = {"": lambda c: c.what, page.beside or "paper": paper, "ours": ours,
+               "ours / theirs": lambda c: f"{ratio(c):.3g}" if c.paper else "-", "remark": lambda c: c.remark}
     if all(c.paper is None for c in page.comparisons):
-        return [["", "ours", "remark"]] + [[c.what, ours(c), c.remark] for c in page.comparisons]
-    rows = [["", page.beside or "paper", "ours", "ours / theirs", "remark"]]
-    for c in page.comparisons:
-        paper = "-" if c.paper is None else with_unit(shown(c.paper), c.unit) + (" (derived)" if c.derived else "")
-        rows.append([c.what, paper, ours(c), f"{ratio(c):.3g}" if c.paper else "-", c.remark])
-    return rows
+        columns = {name: columns[name] for name in ("", "ours", "remark")}
+    if not any(c.remark for c in page.comparisons):
+        del columns["remark"]
+    return [list(columns)] + [[text(c) for text in columns.values()] for c in page.comparisons]
 
 
 def title_of_comparisons(page):
@@ -135,6 +138,12 @@ def lines_of_run(page):
     lines = [(key, page.run[key]) for key in ("command", "version", "device") if page.run]
     return lines + [(key, value if isinstance(value, str) else json.dumps(plain(value)))
                     for key, value in page.settings.items()]
+
+
+def command_of(pages):
+    """What makes all of them: of several, the longest command names all options and scenes."""
+    command = max((page.run.get("command", "") for page in pages), key=len)
+    return command if len(pages) == 1 else re.sub(r"^raya study \S+", "raya study all", command)
 
 
 def verdict_sentences(pages):
@@ -166,18 +175,15 @@ def prose(text):
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
 
 
-def is_number(cell):
-    try:
-        float(re.split(r"[ ±]", cell.replace("+-", "±").strip())[0])
-    except ValueError:
-        return cell in ("-", "")
-    return True
+# '-', or a number, its interval, a unit.
+NUMBER = re.compile(r"-?|(-?[\d.]+(e[-+]?\d+)?|-?inf)( \+- \S+)?( [^\s\d]+)?( \(derived\))?")
 
 
 def classes_of(cells):
-    """n: a column of numbers; w: of sentences, which need width."""
+    """n: a column of numbers; t: of text; w: of sentences, which need width."""
     columns = list(zip(*cells[1:])) or [()] * len(cells[0])
-    return ["n" if all(map(is_number, c)) else "w" if any(len(cell) > 60 for cell in c) else "" for c in columns]
+    return ["n" if all(map(NUMBER.fullmatch, c)) else "w" if max(map(len, c)) > 60 else
+            "t" if max(map(len, c)) > 15 else "" for c in columns]
 
 
 def inlined(svg):
@@ -196,7 +202,7 @@ def environment():
                               undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
     made.filters.update(prose=prose, markdown_table=markdown_table, classes=classes_of)
     made.globals.update({one.__name__: one for one in (
-        cells_of_comparisons, cells_of_points, cells_of_table, len, lines_of_run, title_of_comparisons,
+        cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run, title_of_comparisons,
         verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS, MOST_ROWS=MOST_ROWS,
         not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
     return made
