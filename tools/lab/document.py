@@ -120,6 +120,11 @@ def title_of_comparisons(page):
     return f"Compared with {page.beside or 'the papers'}"
 
 
+def cells_of_claims(pages):
+    return [["paper", "says", "verdict", "why"]] + [
+        [f"{c.paper}, {c.place}", c.words, c.verdict, c.why] for page in pages for c in page.claims]
+
+
 def cells_of_points(plot):
     bars = any(any(s.half_widths) for s in plot.series)
     rows = [["series", plot.x_label, plot.y_label] + ["+-"] * bars]
@@ -196,15 +201,19 @@ def markdown_table(cells):
     return "\n".join([lines[0], "|" + "---|" * len(cells[0])] + lines[1:])
 
 
+def items(lines):
+    return "\n".join(f"- {line}" for line in lines)
+
+
 def environment():
     made = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
                               autoescape=jinja2.select_autoescape(["html.j2"]), lstrip_blocks=True,
                               undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
-    made.filters.update(prose=prose, markdown_table=markdown_table, classes=classes_of)
+    made.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
     made.globals.update({one.__name__: one for one in (
-        cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run, title_of_comparisons,
-        verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS, MOST_ROWS=MOST_ROWS,
-        not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
+        cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
+        title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS,
+        MOST_ROWS=MOST_ROWS, not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
     return made
 
 

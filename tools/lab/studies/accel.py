@@ -25,14 +25,13 @@ From how many objects on does a grid or a BVH pay, which of them, and how does t
   they differ by more than one in a thousand there is no ratio.
 """
 import math
-import os
-import subprocess
 
 import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Page, Plot, Table, estimate, fitted_exponent, sampled, series_by, study
 from raya.lab.laboratory import rays_of, tests_of
+from raya.lab.programs import beside_raya, output_of
 
 NONE, GRID, BVH, EMBREE = "none", "grid", "bvh", "Embree"
 BOUNCES, ROUNDS, BEARABLE_S, ENOUGH_S, PEER_SAMPLES, SEEDS = 4, 5, 30, 10, 3, 5
@@ -74,19 +73,11 @@ def raya_way(lab, scene, size, name):
     return way
 
 
-def embree_program():
-    path = os.path.join(os.path.dirname(raya.program()), "embree_peer")
-    return path if os.access(path, os.X_OK) else None
-
-
 def ask_embree(program, nff, size):
     """({way: (rays, seconds)}, seconds of the build)"""
-    run = subprocess.run([program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), "centres", str(PEER_SAMPLES)],
-                         input=nff, capture_output=True, text=True)
-    if run.returncode:
-        raise ValueError((run.stderr.strip().splitlines() or [f"embree_peer: exit code {run.returncode}"])[-1])
+    words = [program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), "centres", str(PEER_SAMPLES)]
     ways, build = {}, math.nan
-    for line in run.stdout.splitlines():
+    for line in output_of(words, "embree_peer", input=nff).splitlines():
         name, *words = line.split()
         if name == "build":
             build = float(words[0])
@@ -96,7 +87,7 @@ def ask_embree(program, nff, size):
 
 
 def embree_way(scene, size, failures, group):
-    program = embree_program()
+    program = beside_raya("embree_peer")
     if not program:
         return None
     try:
@@ -292,7 +283,7 @@ def finding_of_memory(runs):
 
 
 def findings_of_embree(runs, failures):
-    if not embree_program():
+    if not beside_raya("embree_peer"):
         return ["Embree was not measured: no program embree_peer lies beside raya; `tools/peers --setup` installs "
                 "Embree, then cmake's target embree_peer makes it."]
     findings = [finding_of_two(runs, EMBREE, BVH)] if (runs["way"] == EMBREE).any() else []

@@ -11,7 +11,8 @@ How many transputers are worth having, and what is it that they wait for?
 - A processor has its part in each message at either end; u and tests are of computing alone.
 - 2-D: slabs of nodes next to one another, four links a node as a T805 has them; 3-D: six.
 - A series ends where supersteps times nodes would come to more than {launches}: rays that have to visit all voxels,
-  such as those from far away on a plane, make very many supersteps. """
+  such as those from far away on a plane, make very many supersteps.
+"""
 import pandas as pd
 from raya.lab import Comparison, Page, Plot, Series, Table, study
 from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text

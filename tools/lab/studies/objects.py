@@ -31,9 +31,8 @@ Are random objects slower than even ones, is it for their copies, and why does t
   the tests; the machine's time, over that work.
 - Time counts as linear where objects over time is less than 1.1. The reason that Yoshitani & Yamazaki give, rays that
   end earlier, is the right one where fewer voxels a ray explain more than half of the product, by logarithms, for even
-  and for random objects. Both by the whole interval; where it holds the limit the claim cannot be told. """
-import math
-
+  and for random objects. Both by the whole interval; where it holds the limit the claim cannot be told.
+"""
 import numpy as np
 import pandas as pd
 import raya

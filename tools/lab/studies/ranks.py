@@ -22,173 +22,36 @@ How many MPI ranks are worth having, and from where on do they talk more than th
 - Networks: alpha and beta fitted to a ping-pong of `raya ping` (minimum of up to 300 turns for each of nine lengths, 1
   B to 4 MB), two that are assumed, and one that is given, where it is (`--network`). Measured: `mpirun -n R raya
   render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one thread a rank; the model is
-  compared with the minimum. """
+  compared with the minimum.
+"""
 import json
 import os
 import resource
-import shlex
-import shutil
-import subprocess
 import tempfile
 
 import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, one_of, series_by, study
-from raya.lab.laboratory import Measured, format_for
-from raya.lab.voxels import NO_LIMIT, even_scene, near_cube, powers, sides_text
+from raya.lab.laboratory import Measured
+from raya.lab.programs import lacks_mpirun, on_ranks, render_on_ranks
+from raya.lab.rank_model import PARTS, Ring, Torus
+from raya.lab.voxels import even_scene, powers
 
-MOST, TURNS, ENOUGH_S, QUIET = 65_536, 3, 5, 0.05
-SIDES, QUEUE, STATUS_WORDS = (8, 8, 8), 1024, raya.STATUS_WORDS
-PARTS = ("compute", "host", "exchange", "collect", "broadcast")
-LAUNCHER = shlex.split(os.environ.get("RAYA_MPIRUN", "mpirun --bind-to none"))
-
-
-def lacks():
-    if not LAUNCHER or shutil.which(LAUNCHER[0]) is None:
-        return (f"cannot start {LAUNCHER[0] if LAUNCHER else 'RAYA_MPIRUN'}; remedy: install openmpi-bin or mpich, of "
-                "the MPI that raya was built with, or name another launcher in RAYA_MPIRUN")
-    return ""
-
-
-def mpirun(ranks, threads, arguments):
-    """What `raya` prints on so many ranks."""
-    settings = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-    words = LAUNCHER + ["-n", str(ranks), "env", f"POCL_MAX_PTHREAD_COUNT={threads}", raya.program(), *arguments]
-    run = subprocess.run(words, env={**os.environ, **settings}, capture_output=True, text=True)
-    if run.returncode:
-        said = [line for line in run.stderr.splitlines() if line.strip()]
-        own = [line for line in said if line.startswith("raya: ")]
-        raise raya.InputError(f"{ranks} ranks: {(own or said or ['failed'])[-1]}")
-    return run.stdout
-
-
-def render_on_ranks(ranks, arguments):
-    """The report of a render on so many ranks of one thread each."""
-    with tempfile.TemporaryDirectory(prefix="raya-ranks-") as folder:
-        report = os.path.join(folder, "report.json")
-        mpirun(ranks, 1, ["render", *arguments, "--quiet", "-o", os.path.join(folder, "image.pfm"), "--report", report])
-        with open(report, encoding="utf-8") as file:
-            return json.load(file)
+TURNS, ENOUGH_S, QUIET = 3, 5, 0.05
 
 
 def look_around():
     """(numbers of ranks that are measured, processors that each of these has, ping-pong)"""
     here, ping = {1: 1}, None
-    ranks = 2
-    while ranks <= min(max(2 * os.cpu_count(), 4), 16):
-        one = json.loads(mpirun(ranks, 1, ["ping"]))
+    for ranks in powers(min(max(2 * os.cpu_count(), 4), 16))[1:]:
+        one = json.loads(on_ranks(ranks, ["ping"]))
         ping = ping or one
         hosts = {}
         for place in one["ranks"]:
             hosts.setdefault(place["host"], [0, place["cores"]])[0] += place["threads"]
         here[ranks] = sum(min(threads, cores) for threads, cores in hosts.values())
-        ranks *= 2
     return here, ping
-
-
-def rounds(ranks):
-    return (ranks - 1).bit_length()
-
-
-class Ring:
-    """A ring with the filter: as many PEs as the image has columns, or as ranks where these are more."""
-
-    name, label = "ring", "trace"
-
-    def __init__(self, lab, scene, file, size):
-        costs = lab.costs(scene, size)
-        self.arguments = [file, "--machine", "grande", "--accel", "none", "--antialias", "filter", "--format",
-                          format_for(scene), "--size", str(size)]
-        self.ranks = powers(min(MOST, size * size))
-        self.parts = []
-        for ranks in self.ranks:
-            pes = max(size, ranks)
-            offset = (round(pes**0.5) if ranks > size else 16) % size
-            loads = np.bincount(raya.ranks_of_pes(pes, ranks), raya.loads(costs.trace, pes=pes, offset=offset))
-            self.parts.append({"pes": pes, "u": loads.max() / loads.mean() - 1,
-                               "rotations": raya.exchange_rotations(size, size, pes=pes, offset=offset),
-                               "block": 12 * raya.largest_share(size, size, pes=pes, offset=offset),
-                               "image": 12 * size * size, "scene": 4 * costs.job_words})
-        self.arrays = [f"{part['pes']} PEs" for part in self.parts]
-
-    def predict(self, i, one, network, processors):
-        """Seconds by what they are spent on."""
-        part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
-        parts = dict.fromkeys(PARTS, 0.0)
-        parts.update(compute=(one["trace"] * (1 + part["u"]) + one["rest"]) / processors, host=one["host"])
-        if ranks > 1:
-            parts["exchange"] = part["rotations"] * (alpha + beta * part["block"])
-            parts["collect"] = 2 * (ranks - 1) * alpha + beta * part["image"] * (1 - 1 / ranks)
-            parts["broadcast"] = rounds(ranks) * (alpha + beta * part["scene"])
-        return parts
-
-
-class Torus:
-    """A torus of 8 x 8 x 8 nodes, counted in one render; beyond as many ranks, tori whose nodes have been cut
-    further."""
-
-    name, label = "torus", "trace_voxel"
-
-    def __init__(self, lab, scene, file, size):
-        sides = sides_text(SIDES)
-        self.arguments = [file, "--machine", "torus", "--nodes", sides, "--voxels", sides, "--queue", str(QUEUE),
-                          "--size", str(size)]
-        self.ranks = powers(MOST)
-        result = lab.render(scene, machine="torus", size=size, nodes=sides, voxels=sides, queue=QUEUE, packets=True,
-                            pe_memory=NO_LIMIT)
-        nodes = int(np.prod(SIDES))
-        status, words = 4 * STATUS_WORDS * nodes, 4 * result.copied_words
-        counted = {ranks: {**bricks(result, ranks), "status": status, "scene": words, "host": 1}
-                   for ranks in powers(nodes)}
-        self.parts = [counted[r] if r <= nodes else cut_further(counted[nodes], r // nodes) for r in self.ranks]
-        self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed"
-                       for r in self.ranks]
-
-    def predict(self, i, one, network, processors):
-        part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
-        busiest = one["trace"] * part["cycles"] / part["all"] + one["rest"] * part["most"] / part["nodes"]
-        parts = dict.fromkeys(PARTS, 0.0)
-        parts.update(compute=busiest * ranks / processors, host=one["host"] * part["host"])
-        if ranks > 1:
-            others = 1 - 1 / ranks
-            parts["exchange"] = part["messages"] * alpha + part["bytes"] * beta
-            parts["collect"] = part["supersteps"] * (rounds(ranks) * alpha + beta * part["status"] * others)
-            parts["broadcast"] = (ranks - 1) * alpha + beta * part["scene"] * others
-        return parts
-
-
-def bricks(result, ranks):
-    """Sums over the supersteps, each of the rank that has most in it. What the nodes of a brick send over one of their
-    links to the same rank is one message."""
-    rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
-    cycles, words = result.step_cycles, result.step_link_words
-    by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)
-    source, target = np.repeat(rank_of[:, None], 6, 1), rank_of[ends]
-    link = np.broadcast_to(np.arange(6), ends.shape)
-    node, way = np.nonzero(source != target)
-    face = (source[node, way].astype(np.int64) * ranks + target[node, way]) * 6 + link[node, way]
-    faces, index = np.unique(face, return_inverse=True)
-    sums = np.zeros((len(words), len(faces)))  # [superstep, face]
-    np.add.at(sums.T, index, words[:, node, way].T.astype(float))
-    sums = 4 * sums
-    most = {"messages": 0.0, "bytes": 0.0}
-    if len(faces):
-        for name, values in (("messages", (sums > 0).astype(float)), ("bytes", sums)):
-            ways = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
-                    for end in (faces // 6 // ranks, faces // 6 % ranks)]
-            most[name] = np.maximum(*ways).max(1).sum()
-    return {"nodes": len(rank_of), "most": np.bincount(rank_of).max(), "supersteps": len(cycles),
-            "cycles": float(by_rank.max(1).sum()), "all": float(cycles.sum()), **most}
-
-
-def cut_further(part, times):
-    """The torus of so many times as many nodes, each of whose nodes has been cut into so many, a rank for each."""
-    side = times ** (1 / 3)
-    change = {"nodes": times, "supersteps": side, "cycles": 1 / times, "messages": side, "bytes": 1 / side**2,
-              "status": times, "host": side * times}
-    return {name: value * change.get(name, 1) for name, value in part.items()}
 
 
 def work_of(machine, report):
@@ -224,7 +87,7 @@ def processor_time():
     return sum(ticks) - ticks[3] - ticks[4], sum(ticks), own
 
 
-@study("ranks", one_scene=True, lacks=lacks)
+@study("ranks", one_scene=True, lacks=lacks_mpirun)
 def ranks(lab, scenes):
     on_ring, on_torus = one_of(scenes), scenes[0] if scenes else even_scene(8320)
     size = lab.size(512)

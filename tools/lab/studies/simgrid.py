@@ -17,12 +17,12 @@ Does another simulator take as long for the same history on the same machine?
 - Effects on the plot are numbered from 0 in that order.
 """
 import os
-import subprocess
 import tempfile
 
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, study
+from raya.lab.programs import beside_raya, output_of
 from raya.lab.voxels import even_scene, run_on_torus
 
 GOAL, BUFFER = 10, 4  # %, how near the two are to be; messages of a class in a port
@@ -34,12 +34,8 @@ EFFECTS = {"computing alone": {"message_cycles": 0, "word_cycles": 0, **NO_LINKS
            "+ both ways share a link": ROOMY, "+ finite buffers": {}}
 
 
-def program():
-    return os.path.join(os.path.dirname(raya.program()), "simgrid_replay")
-
-
 def lacks():
-    return "" if os.access(program(), os.X_OK) else (
+    return "" if beside_raya("simgrid_replay") else (
         "SimGrid is not there: no program simgrid_replay lies beside raya. `tools/setup --studies` installs it "
         "(Debian: libsimgrid-dev), then build again.")
 
@@ -49,11 +45,10 @@ def ask_simgrid(result, changes):
     with tempfile.TemporaryDirectory(prefix="raya-simgrid-") as folder:
         platform, replay = os.path.join(folder, "platform.xml"), os.path.join(folder, "replay.txt")
         messages = result.write_replay(platform, replay, **changes)
-        run = subprocess.run([program(), platform, replay, "--log=root.thres:error"], capture_output=True, text=True)
-    words = run.stdout.split()
-    if run.returncode or words[0::2] != ["finish_ms", "delivered"]:
-        said = run.stderr.strip().splitlines() or ["it does not print its time"]
-        raise raya.InputError(f"simgrid_replay: {said[-1]}")
+        words = output_of([beside_raya("simgrid_replay"), platform, replay, "--log=root.thres:error"],
+                          "simgrid_replay").split()
+    if words[0::2] != ["finish_ms", "delivered"]:
+        raise raya.InputError("simgrid_replay: does not print its time")
     if int(words[3]) != messages:
         raise raya.InputError(f"simgrid_replay: {words[3]} of {messages} messages delivered")
     return messages, float(words[1])
