@@ -18,6 +18,9 @@ class Estimate:
 
     low = property(lambda self: self.mean - self.half)
     high = property(lambda self: self.mean + self.half)
+    # The same, or where there is no interval the value itself.
+    least = property(lambda self: self.mean if np.isnan(self.half) else self.low)
+    most = property(lambda self: self.mean if np.isnan(self.half) else self.high)
 
     def text(self, digits=3):
         """'0.137 +- 0.007'"""

@@ -37,6 +37,10 @@ NONE, GRID, BVH, EMBREE = "none", "grid", "bvh", "Embree"
 BOUNCES, ROUNDS, BEARABLE_S, ENOUGH_S, PEER_SAMPLES, SEEDS = 4, 5, 30, 10, 3, 5
 FITTED_FROM, SAME_WORK = 100, 1e-3  # objects; of the rays
 NAMED = "named"
+# Members of a row of each scene and way that are shown, under names.
+EACH = {**{name: name for name in ("scene", "seed", "objects", "way", "rays", "tests", "steps")}, "best": "best (ms)",
+        "median": "median (ms)", "samples": "samples", "build": "build (ms)", "scene_words": "scene words",
+        "accel_words": "accelerator words"}
 
 
 def own_scenes():
@@ -147,14 +151,9 @@ def ratios(rows, way, other):
     return found
 
 
-def bound(e, sign):
-    return e.mean if np.isnan(e.half) else e.mean + sign * e.half
-
-
 def text_of(e):
-    def digits(value):
-        return f"{value:.2f}" if value < 100 else f"{value:.0f}"
-    return digits(e.mean) + ("" if np.isnan(e.half) else f" +- {digits(e.half)}")
+    mean, half = (f"{value:.2f}" if value < 100 else f"{value:.0f}" for value in (e.mean, e.half))
+    return mean if np.isnan(e.half) else f"{mean} +- {half}"
 
 
 def ratios_text(some):
@@ -166,26 +165,18 @@ def accel(lab, scenes):
     size = lab.size(256)
     some = [(NAMED, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()
     runs, left_out, failures = measure(lab, size, some)
-    rows = rows_of(runs)
-    growth = growth_of(runs)
-    series = runs["series"].unique()
-    findings = [finding_of_paying(runs[runs["series"] == one], one) for one in series]
-    findings += [finding_of_two(runs, GRID, BVH)]
-    findings += [finding_of_growth(growth, one) for one in (growth["scenes"].unique() if len(growth) else [])]
-    findings += [finding_of_memory(runs[runs["series"] == one]) for one in series]
-    if left_out:
-        findings.append(f"Not rendered without an accelerator: {', '.join(left_out)}.")
+    rows, growth = rows_of(runs), growth_of(runs)
+    series = [(name, one) for name, one in runs.groupby("series", sort=False)]
+    findings = [*(finding_of_paying(one, name) for name, one in series), finding_of_two(runs, GRID, BVH),
+                *(finding_of_growth(growth, one) for one in (growth["scenes"].unique() if len(growth) else [])),
+                *(finding_of_memory(one) for _, one in series)]
+    findings += [f"Not rendered without an accelerator: {', '.join(left_out)}."] if left_out else []
     findings += findings_of_embree(runs, failures)
-    table = rows.drop(columns=["series"])
-    each = runs[["scene", "seed", "objects", "way", "rays", "tests", "steps", "best", "median", "samples", "build",
-                 "scene_words", "accel_words"]].fillna(0)
-    each = each.astype({name: int for name in ("tests", "steps", "scene_words", "accel_words")}).rename(columns={
-        "best": "best (ms)", "median": "median (ms)", "build": "build (ms)", "scene_words": "scene words",
-        "accel_words": "accelerator words"})
-    tables = [Table("accel", "Each number of objects and way", table),
+    each = runs[list(EACH)].fillna(0).astype(
+        {name: int for name in ("tests", "steps", "scene_words", "accel_words")}).rename(columns=EACH)
+    tables = [Table("accel", "Each number of objects and way", rows.drop(columns=["series"])),
               Table("accel-scenes", "Each scene and way", each, on_page=False)]
-    if len(growth):
-        tables.append(Table("accel-growth", "Exponent of objects in what a ray takes", growth))
+    tables += [Table("accel-growth", "Exponent of objects in what a ray takes", growth)] if len(growth) else []
     return Page({"size": size, "bounces": BOUNCES, "rounds": ROUNDS, "format": "fp32"}, findings, tables=tables,
                 plots=plots_of(rows), words={
                     "tile": math.gcd(size, 16), "enough": ENOUGH_S, "bearable": BEARABLE_S, "fitted": FITTED_FROM,
@@ -214,11 +205,9 @@ def growth_of(runs):
     for (series, way), some in runs[runs["objects"] >= FITTED_FROM].groupby(["series", "way"], sort=False):
         if series == NAMED or some["objects"].nunique() < 2:
             continue
-        time, tests = [], []
-        for _, line in some.groupby("seed", sort=False):
-            time.append(fitted_exponent(line["objects"], line["best"] / line["rays"]))
-            tests.append(fitted_exponent(line["objects"], line["tests"] / line["rays"]))
-        time, tests = estimate(time), estimate(tests)
+        lines = [line for _, line in some.groupby("seed", sort=False)]
+        time, tests = (estimate([fitted_exponent(line["objects"], line[what] / line["rays"]) for line in lines])
+                       for what in ("best", "tests"))
         rows.append({"scenes": series, "way": way, "from (objects)": some["objects"].min(),
                      "to (objects)": some["objects"].max(), "time": time.mean, "time +-": time.half,
                      "tests": tests.mean, "tests +-": tests.half})
@@ -228,7 +217,7 @@ def growth_of(runs):
 def pays_from(some, way):
     """From how many objects on the other way pays, in scenes that differ in their number of objects."""
     start = len(some)
-    while start > 0 and bound(some[start - 1]["times"], -1) > 1:
+    while start > 0 and some[start - 1]["times"].least > 1:
         start -= 1
     if start == len(some):
         return f"{way} is not shown to pay at {some[-1]['objects']} objects"
@@ -252,8 +241,8 @@ def finding_of_two(runs, way, other):
     some = ratios(runs, way, other)
     if not some:
         return f"No scene has a ratio of {way} to {other}."
-    faster = sum(bound(one["times"], -1) > 1 for one in some)
-    slower = sum(bound(one["times"], 1) < 1 for one in some)
+    faster = sum(one["times"].least > 1 for one in some)
+    slower = sum(one["times"].most < 1 for one in some)
     rest = len(some) - faster - slower
     return (f"{other} is faster than {way} in {faster} of {len(some)}, slower in {slower}"
             f"{f', not to be separated in {rest}' if rest else ''}; time of {way} over {other}: {ratios_text(some)}.")

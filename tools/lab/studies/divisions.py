@@ -109,8 +109,7 @@ def finding_of_optimum(name, by_scene):
     last = sum(b["divisions"] == some["divisions"].iloc[-1] for b, some in zip(best, by_scene))
     more = f"; {last} at the last division tried, so it may lie beyond" if last else ""
     where = ", ".join(f"{b['divisions']} for {b['scene']}" for b in best)
-    text = (f"{SUBJECTS[name][3]}: at divisions {where}; "
-            f"divisions = objects is it for {equal} of {len(best)}{more}.")
+    text = (f"{SUBJECTS[name][3]}: at divisions {where}; divisions = objects is it for {equal} of {len(best)}{more}.")
     return text[0].upper() + text[1:]
 
 
