@@ -287,12 +287,12 @@ def test_two_dimensions(over, word):
 
 
 def test_no_claim_is_forgotten():
-    """Each function of claims is called above; studies that make theirs within a page are run on images."""
+    """Each function of claims is called above; of some studies the whole page is made, of images."""
     within = {"imbalance": imbalance.fig8, "loads": loads.fig7, "turn": turn.turn}
     text = Path(__file__).read_text()
     for file in Path(objects.__file__).parent.glob("*.py"):
         source = file.read_text()
         functions = re.findall(r"^def (claims?_of\w*)", source, re.MULTILINE)
         assert functions or "Claim(" not in source or file.stem in within, file.name
-        for function in functions:
+        for function in functions if file.stem not in within else []:
             assert f"{file.stem}.{function}(" in text, f"{file.stem}.{function}"
