@@ -33,7 +33,6 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, one_of, series_by, study
-from raya.lab.laboratory import Measured
 from raya.lab.programs import lacks_mpirun, on_ranks, render_on_ranks
 from raya.lab.rank_model import PARTS, Ring, Torus
 from raya.lab.voxels import even_scene, powers
@@ -101,53 +100,62 @@ def ranks(lab, scenes):
                     zip((Ring, Torus), (on_ring, on_torus), files)]
         trials = [measure(machine, here, lab.session.device["name"]) for machine in machines]
         busy, whole, own = (b - a for a, b in zip(before, processor_time()))
-    own_network = ping["alpha_s"], ping["beta_s_per_byte"]
-    networks = {"this host": (own_network, f"fitted to the ping-pong, {ping['library']}"),
-                "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes"),
-                "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and "
-                                   "what MPI adds")}
-    if lab.network:
-        networks["given"] = lab.network, "given with --network"
-    rows, checks = [], []
-    for machine, trial in zip(machines, trials):
-        one = work_of(machine, trial[1][1])
-        one_s = sum(machine.predict(0, one, (0, 0), 1).values())
-        for name, (network, _) in networks.items():
-            for i, count in enumerate(machine.ranks):
-                parts = machine.predict(i, one, network, count)
-                total = sum(parts.values())
-                rows.append({"machine": machine.name, "network": name, "ranks": count, "array": machine.arrays[i],
-                             **{f"{part} (ms)": 1e3 * seconds for part, seconds in parts.items()},
-                             "time (ms)": 1e3 * total, "speed-up": one_s / total,
-                             "communication (%)": 100 * sum(parts[p] for p in PARTS[2:]) / total})
-        on_processors = trial[1][1]["device"]["platform"] == "Portable Computing Language"
-        for i, (count, (seconds, _)) in enumerate(trial.items()):
-            cores = here[count] if on_processors else count
-            parts = machine.predict(i, one, own_network, cores)
-            predicted = 1e3 * (sum(parts.values()) - parts["broadcast"])
-            time = Measured(min(seconds), float(np.median(seconds)), max(seconds), len(seconds))
-            checks.append({"machine": machine.name, "ranks": count, "cores": cores, "predicted (ms)": predicted,
-                           "measured, best (ms)": 1e3 * time.least, "median (ms)": 1e3 * time.median,
-                           "largest (ms)": 1e3 * time.largest, "predicted / measured": predicted / time.least / 1e3,
-                           "remark": "ranks share cores" if cores < count else
-                           "the model rests on it" if count == 1 else ""})
-    rows, checks = pd.DataFrame(rows), pd.DataFrame(checks)
+    networks = networks_of(ping, lab.network)
+    ones = [work_of(machine, trial[1][1]) for machine, trial in zip(machines, trials)]
+    rows = pd.DataFrame([row for machine, one in zip(machines, ones) for row in rows_of(machine, one, networks)])
+    checks = pd.DataFrame([row for some in zip(machines, ones, trials)
+                           for row in checks_of(*some, networks["this host"][0], here)])
     summary = pd.DataFrame([summary_of(*one) for one in rows.groupby(["machine", "network"], sort=False)])
     others = min(max((busy - own) / whole, 0), 1) if whole > 0 else 0
     return Page({"scene": on_ring.name, "torus_scene": on_torus.name, "size": size, "torus_size": size,
-                 "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": ENOUGH_S, "alpha_s": own_network[0],
-                 "beta_s_per_byte": own_network[1]},
+                 "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": ENOUGH_S, "alpha_s": ping["alpha_s"],
+                 "beta_s_per_byte": ping["beta_s_per_byte"]},
                 [*(finding_of_machine(summary, name) for name in ("ring", "torus")), finding_of_checks(checks),
                  finding_of_others(others), finding_of_network(ping)],
-                [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / "
-                            "measured", "", None, c["predicted / measured"],
-                            c["remark"]) for _, c in checks[checks["ranks"] > 1].iterrows()],
+                [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None,
+                            c["predicted / measured"], c["remark"])
+                 for _, c in checks[checks["ranks"] > 1].iterrows()],
                 tables=tables_of(rows, checks, summary, networks, ping), plots=[*plots_of(rows, checks)],
                 news=["Neither paper has more than one machine to run on; here its array is divided over as many hosts "
                       "as one likes, with the same image."],
                 clock="measured here where it says so, all else predicted from measured seconds of one rank. What a "
                 "render takes begins when its kernels are built and the scene has been sent; the time in all has the "
                 "sending too.")
+
+
+def networks_of(ping, given):
+    """{name: ((alpha s, beta s a byte), where they are from)}"""
+    fitted = ping["alpha_s"], ping["beta_s_per_byte"]
+    networks = {"this host": (fitted, f"fitted to the ping-pong, {ping['library']}"),
+                "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes"),
+                "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and "
+                                   "what MPI adds")}
+    return {**networks, "given": (given, "given with --network")} if given else networks
+
+
+def rows_of(machine, one, networks):
+    """What is predicted from one rank's seconds, for each network and number of ranks."""
+    one_s = sum(machine.predict(0, one, (0, 0), 1).values())
+    for name, (network, _) in networks.items():
+        for i, count in enumerate(machine.ranks):
+            parts = machine.predict(i, one, network, count)
+            total = sum(parts.values())
+            yield {"machine": machine.name, "network": name, "ranks": count, "array": machine.arrays[i],
+                   **{f"{part} (ms)": 1e3 * seconds for part, seconds in parts.items()}, "time (ms)": 1e3 * total,
+                   "speed-up": one_s / total, "communication (%)": 100 * sum(parts[p] for p in PARTS[2:]) / total}
+
+
+def checks_of(machine, one, trial, network, here):
+    """What is predicted for the ranks that were measured, beside it."""
+    on_processors = trial[1][1]["device"]["platform"] == "Portable Computing Language"
+    for i, (count, (seconds, _)) in enumerate(trial.items()):
+        cores = here[count] if on_processors else count
+        parts = machine.predict(i, one, network, cores)
+        predicted = 1e3 * (sum(parts.values()) - parts["broadcast"])
+        yield {"machine": machine.name, "ranks": count, "cores": cores, "predicted (ms)": predicted,
+               "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
+               "largest (ms)": 1e3 * max(seconds), "predicted / measured": predicted / min(seconds) / 1e3,
+               "remark": "ranks share cores" if cores < count else "the model rests on it" if count == 1 else ""}
 
 
 def summary_of(key, some):
