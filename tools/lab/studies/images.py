@@ -31,8 +31,7 @@ def rows_of(pictures, objects, pes, offset):
     for name, values in zip(("p = 0", f"p = {offset}"), u):
         rows[f"u, {name}"] = values
         rows[f"efficiency, {name}"] = 1 / (1 + np.array(values))
-    return rows.set_axis([*rows.columns[:4], "u, p = 0", "efficiency, p = 0", f"u, p = {offset}",
-                          f"efficiency, p = {offset}"], axis=1)
+    return rows
 
 
 @study("images")
