@@ -9,7 +9,8 @@ import pandas as pd
 import raya
 from raya.lab import Page, Plot, Table, estimate, one_of, series_by
 
-MAPPINGS = {"column split": {"mapping": "column"}, "cyclic, p = 16": {"offset": 16}, "tiles 8 x 8": {"mapping": "tiles:8x8"}}
+MAPPINGS = {"column split": {"mapping": "column"}, "cyclic, p = 16": {"offset": 16},
+            "tiles 8 x 8": {"mapping": "tiles:8x8"}}
 
 
 def run(lab, scenes):
@@ -19,7 +20,8 @@ def run(lab, scenes):
         cost = lab.costs(scene.turned(360 * frame / frames), size).trace
         for name, options in MAPPINGS.items():
             loads = raya.loads(cost, pes=size, **options)
-            rows.append({"turned by (degrees)": 360 * frame / frames, "mapping": name, "u": loads.max() / loads.mean() - 1})
+            rows.append({"turned by (degrees)": 360 * frame / frames, "mapping": name,
+                         "u": loads.max() / loads.mean() - 1})
     rows = pd.DataFrame(rows)
     means = {name: estimate(some["u"]).text() for name, some in rows.groupby("mapping", sort=False)}
     return Page({"scene": scene.name, "size": size, "pes": size, "frames": frames},

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Path = std::vector<std::string>;  // of a command: {"study", "fig7"}
+using Path = std::vector<std::string>;  // of a command: {"generate", "random"}
 
 void for_each_command(CLI::App& command, const Path& path, const std::function<void(CLI::App&, const Path&)>& see) {
     see(command, path);

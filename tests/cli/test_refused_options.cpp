@@ -93,7 +93,6 @@ TEST_CASE("words that do not belong there are refused with a hint at the help", 
     check_refused(outputs, {"frobnicate"}, 2, {"raya: no command frobnicate; there are render, explore, devices"});
     check_refused(outputs, {"rendr"}, 2, {"raya: no command rendr (did you mean render?); there are"});
     check_refused(outputs, {"verify", "--ful"}, 2, {"no option --ful (did you mean --full?); see raya verify --help"});
-    check_refused(outputs, {"study", "-o", "x", "fig7"}, 2, {"-o stands before fig7", "let it follow"});
     check_refused(outputs, {"study", "fig7", "fig8", "-o", outputs / "z"}, 2, {"fig8 is a study", "raya study all"});
     check_refused(outputs, {"render"}, 2, {"SCENE is required", "--help"});
     check_refused(outputs, {"render", scene}, 2, {"--output is required", "--help"});

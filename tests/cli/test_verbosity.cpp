@@ -207,8 +207,6 @@ TEST_CASE("studies, pages and frames print nothing with -q", "[cli][verbosity]")
     const ScratchFolder folder;
     for (const Words& words :
          {Words{"study", "fig7", "--size", "32", "-o", folder / "fig7", "-q"},
-          Words{"study", "formats", scene_file("planes"), "--format", "e6m15", "--size", "8", "--samples", "1", "-o",
-                folder / "formats", "-q"},
           Words{"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
           small_render(folder, {"--frames", "1:2", "--turn", "90", "-q"})}) {
         const RunOutcome run = succeed(words);

@@ -117,7 +117,6 @@ TEST_CASE("every command that takes long says so on a terminal within two second
     };
     for (const auto& [words, told] :
          quick(2, {std::pair<Words, std::string>{with(render, {"--pes", "4"}), "preparing ... 1 s"},
-                   {{"study", "fig7", "--size", "17", "-o", folder / "s"}, "preparing ... 1 s"},
                    {with(render, {"--machine", "torus"}), "preparing ... 1 s"},
                    {{"bench", "--size", "8", "--pes", "8", "--lanes", "4", "--format", "fp32", "--samples", "1"},
                     "preparing ... 1 s"}})) {

@@ -38,7 +38,7 @@ EXPECTED = [
     ("raya render --size ", [], ["notes.txt", "ball.nff"]),
     ("raya manual gen", ["generate"], ["ball.nff"]),
     ("raya help stu", ["study"], ["render"]),
-    ("raya help study fi", ["fig7", "fig13"], ["table2", "render"]),
+    ("raya help study ", [], ["fig7", "render"]),
     ("raya render -", ["--quiet", "--verbose", "-q"], ["--worker"]),
     ("raya completion ", ["bash", "zsh", "fish"], ["notes.txt"]),
 ]

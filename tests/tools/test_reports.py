@@ -161,9 +161,7 @@ class Reports:
         for words in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
             self.take("info", f"info {words[0]}", self.run(self.raya, "info", *words, "--json", say=subprocess.PIPE))
         for study in ("table2", "table4"):
-            self.one("study", "study", study, "--size", "32", "-o", "study", of=f"study/{study}.json", RAYA_PYTHON="/bin/false")
-        self.one("study-formats", "study", "formats", scene, "--size", "16", "--lanes", "1", "--format", "e6m15", "--samples", "1", "-o", "study",
-                 of="study/formats.json")
+            self.one("study", "study", study, "--size", "32", "-o", "study", of=f"study/{study}.json")
 
     def tune(self, scene):
         """Until a candidate has ended, however slow this machine is."""

@@ -8,8 +8,9 @@ from importlib.util import find_spec
 
 _MISSING = [name for name in ("numpy", "scipy", "pandas", "matplotlib", "jinja2", "tqdm") if find_spec(name) is None]
 if _MISSING:
-    _TEXT = (f"study needs the Python packages {', '.join(_MISSING)}, which {sys.executable} does not have; remedy: sudo "
-             f"apt-get install {' '.join('python3-' + name for name in _MISSING)}, or name another Python in RAYA_PYTHON")
+    _TEXT = (f"study needs the Python packages {', '.join(_MISSING)}, which {sys.executable} does not have; remedy: "
+             f"sudo apt-get install {' '.join('python3-' + name for name in _MISSING)}, or name another Python in "
+             "RAYA_PYTHON")
     if sys.argv[0] != "-m":
         raise ImportError(_TEXT)
     print(f"raya: {_TEXT}", file=sys.stderr)  # python3 -m raya.lab comes by here first
@@ -18,7 +19,7 @@ if _MISSING:
 from raya.lab import papers
 from raya.lab.laboratory import (Costs, Ensemble, Laboratory, balance_pass, measured, one_of, sampled, settings_of_pass,
                                  study_scenes)
-from raya.lab.page import Claim, Comparison, Page, Picture, Plot, Series, Table, series_by, shown
+from raya.lab.page import Claim, Comparison, Page, Picture, Plot, Series, Table, series_by, shown, with_paper
 from raya.lab.statistics import (NOT_REPRODUCED, REPRODUCED, UNDECIDED, Estimate, each_of, estimate, fitted_exponent,
                                  prediction, prediction_text, range_text, verdict, verdict_among)
 from raya.lab.study import study

@@ -20,20 +20,22 @@ from raya.lab.statistics import NOT_REPRODUCED, REPRODUCED, UNDECIDED
 
 OPEN_ROWS, MOST_ROWS = 24, 400  # of a table that is shown unfolded, and that is shown at all
 
+# No script, nothing from elsewhere.
+POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 ABOUT = {
     "title": "The load laboratory",
     "question": "What do the papers on two array machines that trace rays say, which of it is seen when their machines "
                 "are modelled again, and what lies beyond?",
     "method": [
-        "Kohata & Ito 1993 divide the screen: 256 processors on a ring and a bus, the SPA, share the pixels by a cyclic "
-        "mapping. Yoshitani & Yamazaki, about 1995, divide space: 64 transputers on a torus hold a voxel each, and rays "
-        "travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids, with which raya's "
-        "are compared.",
+        "Kohata & Ito 1993 divide the screen: 256 processors on a ring and a bus, the SPA, share the pixels by a "
+        "cyclic mapping. Yoshitani & Yamazaki, about 1995, divide space: 64 transputers on a torus hold a voxel each, "
+        "and rays travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids, with "
+        "which raya's are compared.",
         "Both machines are models that run as OpenCL kernels. The image is the same, bit for bit, whatever machine and "
         "mapping make it. Loads, packets and tests are counted where they happen; times are modelled from these counts "
         "unless a page calls them measured.",
-        "A claim is what a paper says. It is reproduced or not by a rule over the figures next to it; it cannot be told "
-        "where the paper leaves out what decides it, or where our interval holds both answers.",
+        "A claim is what a paper says. It is reproduced or not by a rule over the figures next to it; it cannot be "
+        "told where the paper leaves out what decides it, or where our interval holds both answers.",
         "A paper's figure that is marked as derived is arithmetic on printed ones. After +- stands the half width of a "
         "95 % confidence interval by Student's t.",
     ],
@@ -71,8 +73,13 @@ def plain(value):
     return value
 
 
+def rows_of(table):
+    """Each cell as its column has it: whole numbers stay whole."""
+    return list(table.rows.itertuples(index=False, name=None))
+
+
 def json_of(page):
-    tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": t.rows.values.tolist()}
+    tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": rows_of(t)}
               for t in page.tables]
     pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]
     comparisons = [{**plain(c), "ratio": plain(ratio(c))} for c in page.comparisons]
@@ -95,19 +102,27 @@ def cells_of_comparisons(page):
     def ours(c):
         return with_unit(shown(c.ours) + (f" +- {c.half_width:.2g}" if c.half_width else ""), c.unit)
 
+    def paper(c):
+        return "-" if c.paper is None else with_unit(shown(c.paper), c.unit) + (" (derived)" if c.derived else "")
+
+    columns = {"": lambda c: c.what, page.beside or "paper": paper, "ours": ours,
+               "ours / theirs": lambda c: f"{ratio(c):.3g}" if c.paper else "-", "remark": lambda c: c.remark}
     if all(c.paper is None for c in page.comparisons):
-        return [["", "ours", "remark"]] + [[c.what, ours(c), c.remark] for c in page.comparisons]
-    rows = [["", page.beside or "paper", "ours", "ours / theirs", "remark"]]
-    for c in page.comparisons:
-        paper = "-" if c.paper is None else with_unit(shown(c.paper), c.unit) + (" (derived)" if c.derived else "")
-        rows.append([c.what, paper, ours(c), f"{ratio(c):.3g}" if c.paper else "-", c.remark])
-    return rows
+        columns = {name: columns[name] for name in ("", "ours", "remark")}
+    if not any(c.remark for c in page.comparisons):
+        del columns["remark"]
+    return [list(columns)] + [[text(c) for text in columns.values()] for c in page.comparisons]
 
 
 def title_of_comparisons(page):
     if all(c.paper is None for c in page.comparisons):
         return "Chief figures"
     return f"Compared with {page.beside or 'the papers'}"
+
+
+def cells_of_claims(pages):
+    return [["paper", "says", "verdict", "why"]] + [
+        [f"{c.paper}, {c.place}", c.words, c.verdict, c.why] for page in pages for c in page.claims]
 
 
 def cells_of_points(plot):
@@ -120,7 +135,7 @@ def cells_of_points(plot):
 
 
 def cells_of_table(table):
-    return [list(table.rows.columns)] + [[shown(cell) for cell in row] for row in table.rows.values.tolist()]
+    return [list(table.rows.columns)] + [[shown(cell) for cell in row] for row in rows_of(table)]
 
 
 def lines_of_run(page):
@@ -128,6 +143,12 @@ def lines_of_run(page):
     lines = [(key, page.run[key]) for key in ("command", "version", "device") if page.run]
     return lines + [(key, value if isinstance(value, str) else json.dumps(plain(value)))
                     for key, value in page.settings.items()]
+
+
+def command_of(pages):
+    """What makes all of them: of several, the longest command names all options and scenes."""
+    command = max((page.run.get("command", "") for page in pages), key=len)
+    return command if len(pages) == 1 else re.sub(r"^raya study \S+", "raya study all", command)
 
 
 def verdict_sentences(pages):
@@ -159,18 +180,15 @@ def prose(text):
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
 
 
-def is_number(cell):
-    try:
-        float(re.split(r"[ ±]", cell.replace("+-", "±").strip())[0])
-    except ValueError:
-        return cell in ("-", "")
-    return True
+# '-', or a number, its interval, a unit.
+NUMBER = re.compile(r"-?|(-?[\d.]+(e[-+]?\d+)?|-?inf)( \+- \S+)?( [^\s\d]+)?( \(derived\))?")
 
 
 def classes_of(cells):
-    """n: a column of numbers; w: of sentences, which need width."""
+    """n: a column of numbers; t: of text; w: of sentences, which need width."""
     columns = list(zip(*cells[1:])) or [()] * len(cells[0])
-    return ["n" if all(map(is_number, c)) else "w" if any(len(cell) > 60 for cell in c) else "" for c in columns]
+    return ["n" if all(map(NUMBER.fullmatch, c)) else "w" if max(map(len, c)) > 60 else
+            "t" if max(map(len, c)) > 15 else "" for c in columns]
 
 
 def inlined(svg):
@@ -183,33 +201,38 @@ def markdown_table(cells):
     return "\n".join([lines[0], "|" + "---|" * len(cells[0])] + lines[1:])
 
 
+def items(lines):
+    return "\n".join(f"- {line}" for line in lines)
+
+
 def environment():
     made = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
                               autoescape=jinja2.select_autoescape(["html.j2"]), lstrip_blocks=True,
                               undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
-    made.filters.update(prose=prose, markdown_table=markdown_table, classes=classes_of)
-    made.globals.update(about=ABOUT, cells_of_comparisons=cells_of_comparisons, cells_of_points=cells_of_points,
-                        title_of_comparisons=title_of_comparisons, cells_of_table=cells_of_table, len=len,
-                        lines_of_run=lines_of_run, verdict_sentences=verdict_sentences, OPEN_ROWS=OPEN_ROWS,
-                        MOST_ROWS=MOST_ROWS, not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
+    made.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
+    made.globals.update({one.__name__: one for one in (
+        cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
+        title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS,
+        MOST_ROWS=MOST_ROWS, not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
     return made
 
 
 def write_page(folder, page):
     """Writes all files of one study; returns its drawings for the document, as HTML by name."""
-    drawings = {}
+    drawings, files = {}, {}
     for table in page.tables:
-        write_whole(folder / f"{table.name}.csv", table.rows.to_csv(index=False, na_rep="-"))
+        files[f"{table.name}.csv"] = table.rows.to_csv(index=False, na_rep="-")
     for picture in page.pictures:
         drawings[picture.name] = base64.b64encode(picture.png).decode()
-        write_whole(folder / f"{picture.name}.png", picture.png)
+        files[f"{picture.name}.png"] = picture.png
     for plot in page.plots:
-        for kind, content in plots.files_of(plot).items():
-            write_whole(folder / f"{plot.name}.{kind}", content)
-            if kind == "svg":
-                drawings[plot.name] = inlined(content.decode())
-    write_whole(folder / f"{page.name}.json", json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n")
-    write_whole(folder / f"{page.name}.md", environment().get_template("page.md.j2").render(page=page))
+        drawn = plots.files_of(plot)
+        files.update({f"{plot.name}.{kind}": content for kind, content in drawn.items()})
+        drawings[plot.name] = inlined(drawn["svg"].decode())
+    files[f"{page.name}.json"] = json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n"
+    files[f"{page.name}.md"] = environment().get_template("page.md.j2").render(page=page)
+    for name, content in files.items():  # not before all of them could be made
+        write_whole(folder / name, content)
     return drawings
 
 

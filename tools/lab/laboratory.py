@@ -10,6 +10,15 @@ import raya
 
 SPA = next(m for m in raya.machines() if m["name"] == "spa")
 VIEWS = 64
+TESTS = tuple(f"{kind}_tests" for kind in ("sphere", "plane", "polygon", "cone"))
+
+
+def rays_of(events):
+    return sum(events[kind] for kind in ("primary", "reflected", "refracted", "shadow"))
+
+
+def tests_of(events):
+    return sum(events[kind] for kind in TESTS)
 
 
 @dataclass
@@ -54,9 +63,8 @@ class Laboratory:
     size: pixels a side that the user asked for; network: (alpha s, beta s a byte); options: of every render (device).
     """
 
-    def __init__(self, folder, size=None, network=None, progress=None, **options):
+    def __init__(self, folder, size=None, network=None, **options):
         self._folder, self._size, self.network, self._options = Path(folder), size, network, options
-        self._progress = progress or (lambda: None)
         self._session = None
 
     @property
@@ -70,7 +78,6 @@ class Laboratory:
 
     def render(self, scene, **options):
         """raya.render() on the laboratory's device."""
-        self._progress()
         kept = {k: v for k, v in self._options.items() if k != "device"}
         return raya.render(scene, session=self.session, **kept, **options)
 
@@ -111,6 +118,12 @@ def balance_pass(lab, scenes, first):
     ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
     image = (lambda costs: costs.trace) if first else (lambda costs: costs.supersample)
     return scene.name, size, image(ensemble.picture), [image(view) for view in ensemble.views]
+
+
+VIEWS_PROSE = """
+- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
+  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
+  looks at. Intervals are of 95 %."""  # of the studies of one pass, below what they measure
 
 
 def settings_of_pass(scene, size, views):

@@ -1,9 +1,11 @@
 """What a study has found, as plain data: from this its files and its part of the document are made."""
-from dataclasses import dataclass, field
+import numbers
+from dataclasses import dataclass, field, replace
 from typing import Optional
 
 import numpy as np
 import pandas as pd
+from raya.lab.statistics import VERDICTS
 
 
 @dataclass
@@ -17,6 +19,8 @@ class Table:
 
     def __post_init__(self):
         self.rows = pd.DataFrame(self.rows)
+        if self.rows.empty or not self.rows.columns.is_unique:
+            raise ValueError(f"table {self.name}: has no rows, or two columns of one name")
 
 
 @dataclass
@@ -28,8 +32,13 @@ class Series:
     half_widths: list = field(default_factory=list)  # of the 95 % intervals of y
 
     def __post_init__(self):
-        self.x, self.y = ([float(value) for value in values] for values in (self.x, self.y))
-        self.half_widths = np.nan_to_num([float(half) for half in self.half_widths]).tolist()
+        try:
+            self.x, self.y = ([float(value) for value in values] for values in (self.x, self.y))
+            self.half_widths = np.nan_to_num([float(half) for half in self.half_widths]).tolist()
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"series {self.label}: {error}") from None
+        if len(self.y) != len(self.x) or len(self.half_widths) not in (0, len(self.x)):
+            raise ValueError(f"series {self.label}: x, y and half widths are not of one length")
 
 
 def series_by(rows, label, x, y, half=None, style="line"):
@@ -68,6 +77,15 @@ class Comparison:
     derived: bool = False  # the paper's is arithmetic on printed figures
     half_width: Optional[float] = None
 
+    def __post_init__(self):
+        if not isinstance(self.ours, numbers.Real) or np.isnan(self.ours):
+            raise ValueError(f"comparison '{self.what}': ours is {self.ours!r}, not a number")
+
+
+def with_paper(in_paper, comparisons):
+    """The paper's figures are left out where a study is not made as the paper made it."""
+    return comparisons if in_paper else [replace(one, paper=None) for one in comparisons]
+
 
 @dataclass
 class Claim:
@@ -78,6 +96,10 @@ class Claim:
     words: str
     verdict: str
     why: str
+
+    def __post_init__(self):
+        if self.verdict not in VERDICTS:
+            raise ValueError(f"claim '{self.words}': there is no verdict {self.verdict!r}")
 
 
 @dataclass
@@ -102,7 +124,11 @@ class Page:
     def describe(self, name, prose):
         """Title, question and method from a study's prose: a line, a paragraph, a list, filled from the settings."""
         self.name = name
-        lines = [line for line in prose.format_map({**self.settings, **self.words}).splitlines() if line.strip()]
+        try:
+            prose = prose.format_map({**self.settings, **self.words})
+        except KeyError as error:
+            raise ValueError(f"study {name}: its docstring has {{{error.args[0]}}}, which no setting fills") from None
+        lines = [line for line in prose.splitlines() if line.strip()]
         self.title, self.question = lines[0], ""
         for line in lines[1:]:
             if line.startswith("- "):
@@ -111,7 +137,6 @@ class Page:
                 self.method[-1] += " " + line.strip()
             else:
                 self.question = f"{self.question} {line.strip()}".strip()
-        names = [t.name for t in self.tables] + [p.name for p in self.plots + self.pictures]
         for kind in (self.tables, self.plots + self.pictures):
             names = [one.name for one in kind]
             if len(names) != len(set(names)):

@@ -19,10 +19,9 @@ EXCHANGE_0_MS, EXCHANGE_16_MS, SUPERSAMPLE_0_MS, SUPERSAMPLE_16_MS = 2, 12, 739,
 # [D] Table 3: what a rotation takes, and that filtering's arithmetic takes the same for every p, give p = 8.
 FILTER_ARITHMETIC_MS, FILTER_8_MS, EXCHANGE_8_MS = 7, 14, 7
 # [D] Table 4, if its computation is the supersampling alone.
-RECOMPUTED_LEAST, RECOMPUTED_MOST, MEAN_SUPERSAMPLE_MS = 0.16, 0.18, 364
+RECOMPUTED_LEAST, RECOMPUTED_MOST = 0.16, 0.18
 # [D] Tables 2 and 3, with the digits that the rounding of 653, 283 and 64,800 ms leaves them.
 SPEEDUP_16 = 229  # stands in the abstracts
-MEAN_MS = ONE_PE_COMPUTE_MS / PES  # mean load
 SPEEDUP_0 = 99.2
 IMBALANCE_0, IMBALANCE_16 = 1.58, 0.118  # u(0), u(16); Figs 7 and 8 print no u
 IMBALANCE_16_ROUNDING = "the paper's: 0.115 .. 0.121 by the rounding of its times"
@@ -30,7 +29,6 @@ EFFICIENCY_0, EFFICIENCY_16 = 0.388, 0.895
 CAP_RATIO = 3.86  # next to Fig. 9: CAP, 256 PEs over 64
 PIXEL_MACHINE_SPEEDUP = 60  # next to Fig. 9: 64 nodes, "60 or more"
 EXCHANGE_SETUP_MS = 1.375  # [D] Table 4: 2 - 2 x 0.3125 = 12 - 34 x 0.3125
-ROTATION_MS = 0.3125  # [D] Tables 3 and 4: 10 ms for 32 rotations
 
 # Yoshitani & Yamazaki, about 1995.
 RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, next to data for the search and of the object
@@ -73,6 +71,6 @@ REFERENCES = [
 ]
 
 
-def printed(value, scene, size):
-    """A paper's figure where a study is made as the paper made it: of the scene of its kind, at its size; else None."""
-    return value if scene == "centre" and size == SIZE else None
+def is_papers(scene, size):
+    """Whether a study is made as the paper made it: of the scene of its kind, at its size."""
+    return scene == "centre" and size == SIZE

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from raya.lab.page import shown
 
 # M. Okabe and K. Ito's colours, which colour-blind readers can tell apart; without yellow, which is faint on white.
@@ -139,6 +139,8 @@ def set_axes(axes, plot, points):
     for name, values in (("x", x), ("y", y)):
         if name in plot.log:
             set_log_axis(axes, name, values)
+    if "x" not in plot.log and all(value == int(value) for value in x):
+        axes.xaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 2.5, 5, 10], integer=True))
     if y and "y" not in plot.log and 0 <= min(y) <= max(y) / 2:
         axes.set_ylim(bottom=0)
 

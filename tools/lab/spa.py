@@ -6,6 +6,7 @@ of Kohata & Ito that depends on no scene: Tables 3 and 4 leave 7 ms for it [D], 
 for ray tracing too is an assumption, so conclusions are shown for factors of 1 to 8.
 """
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -141,18 +142,11 @@ class SmoothingRuns:
         return report["antialias"].get("recomputed_pixels", 0) / self.size**2
 
 
-@dataclass
-class PhaseCosts:
-    trace: np.ndarray
-    supersample: np.ndarray
-
-
 def smoothing_runs(lab, scenes, antialias):
     scene, size = one_of(scenes), lab.size(256)
     runs = {p % size: run_on_spa(lab, scene, size, size, p % size, antialias) for p in (0, 8, 16)}
-    phases = list(runs.values())[-1].result.costs
-    return SmoothingRuns(scene, size, antialias, runs,
-                         PhaseCosts(phases["trace"], list(phases.values())[-1]))
+    costs = list(runs.values())[-1].result.costs
+    return SmoothingRuns(scene, size, antialias, runs, SimpleNamespace(**{"supersample": costs["trace"], **costs}))
 
 
 def usual_size(scene):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-REPRODUCED, NOT_REPRODUCED, UNDECIDED = "reproduced", "not reproduced", "cannot be told"
+VERDICTS = REPRODUCED, NOT_REPRODUCED, UNDECIDED = "reproduced", "not reproduced", "cannot be told"
 PREDICTABLE = 39  # pictures; the least and the largest of fewer hold less than 95 %
 
 
@@ -18,6 +18,9 @@ class Estimate:
 
     low = property(lambda self: self.mean - self.half)
     high = property(lambda self: self.mean + self.half)
+    # The same, or where there is no interval the value itself.
+    least = property(lambda self: self.mean if np.isnan(self.half) else self.low)
+    most = property(lambda self: self.mean if np.isnan(self.half) else self.high)
 
     def text(self, digits=3):
         """'0.137 +- 0.007'"""

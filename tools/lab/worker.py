@@ -1,9 +1,13 @@
 """A process that runs studies: a driver that crashes ends one of them, and the next has a new process."""
+import os
+import traceback
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 
+import raya
 from raya.lab.laboratory import Laboratory
+from raya.lab.page import Page
 from raya.lab.study import studies, study_of_file
 
 laboratory = None  # of this process: it keeps its device from one study to the next
@@ -16,8 +20,22 @@ def run_study(study, scenes, folder, options):
     if laboratory is None:
         more = {"no_tuned": True} if options.no_tuned else {}
         laboratory = Laboratory(folder, options.size, options.network, device=options.device, **more)
-    page = one.run(laboratory, scenes)
+    try:
+        page = one.run(laboratory, scenes)
+    except (raya.InputError, raya.DeviceError, OSError):
+        raise
+    except Exception as error:
+        raise ValueError(f"study {one.name}: {place_of(error, one.run)}{type(error).__name__}: {error}") from error
+    if not isinstance(page, Page):
+        raise ValueError(f"study {one.name}: run() returns {type(page).__name__}, not a Page")
     return page.describe(one.name, one.prose), laboratory.session.device
+
+
+def place_of(error, run):
+    """'file.py, line N: ', the last one of the study's own that led to the error."""
+    file = run.__code__.co_filename
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+    return f"{os.path.basename(file)}, line {lines[-1]}: " if lines else ""
 
 
 class Worker:

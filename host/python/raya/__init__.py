@@ -82,11 +82,11 @@ def render(scene, *, progress=False, session=None, **options):
 def program():
     """The path of the program raya that lies with this package: of its build or its installation."""
     package = Path(__file__).absolute().parent
-    candidates = [os.environ.get("RAYA_PROGRAM"), package / "raya", package.parents[1] / "raya",
-                  package.parents[3] / "bin" / "raya", shutil.which("raya")]
+    candidates = [os.environ.get("RAYA_PROGRAM"), package / "raya", package / "../../raya", package / "../../../../bin/raya",
+                  shutil.which("raya")]
     for path in candidates:
         if path and os.access(path, os.X_OK) and os.path.isfile(path):
-            return str(path)
+            return os.path.realpath(path)
     raise FileNotFoundError("the program raya was not found next to its Python package; name it in RAYA_PROGRAM")
 
 

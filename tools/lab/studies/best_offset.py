@@ -80,8 +80,9 @@ def best_offset(lab, scenes):
                  for c in first],
                 [claim_of_enough(first), claim_of_square(first)], tables_of(every),
                 [plot for number, choices in enumerate(by_scene, 1) for plot in plots_of(choices, number)],
-                ["Kohata & Ito weigh balance and communication in words. Here is the offset that makes an image soonest, "
-                 "for each number of PEs and each way of anti-aliasing, and how the clock's uncertainty moves it."],
+                ["Kohata & Ito weigh balance and communication in words. Here is the offset that makes an image "
+                 "soonest, for each number of PEs and each way of anti-aliasing, and how the clock's uncertainty moves "
+                 "it."],
                 clock=CLOCK)
 
 
@@ -97,20 +98,21 @@ def views_finding(c):
 
     picture = int(c.best["offset"])
     return (f"{c.scene}, {c.pes} PEs, {c.method}: of {len(c.chosen_by) + len(c.judged_by)} views one half chooses p = "
-            f"{c.chosen}; it takes {c.time_of(c.chosen).text(1)} ms in the other half. There the best of 0..sqrt(P), p = "
-            f"{c.chosen_near}, takes {longer(c.chosen_near)} % longer, p = {c.root} {longer(c.root)} %, p = 0 {longer(0)} "
-            f"%, and p = {picture}, the best for the scene's own picture, {longer(picture)} %.")
+            f"{c.chosen}; it takes {c.time_of(c.chosen).text(1)} ms in the other half. There the best of 0..sqrt(P), p "
+            f"= {c.chosen_near}, takes {longer(c.chosen_near)} % longer, p = {c.root} {longer(c.root)} %, p = 0 "
+            f"{longer(0)} %, and p = {picture}, the best for the scene's own picture, {longer(picture)} %.")
 
 
 def choice_finding(c):
     total, root, zero = c.best["total_ms"], c.times["total_ms"][c.root], c.times["total_ms"][0]
     near = (f"no offset beyond sqrt(P) = {c.root} is better" if c.best_near["offset"] == c.best["offset"] else
-            f"the best of 0..sqrt(P) is p = {c.best_near['offset']:.0f}, {c.loss(c.best_near['total_ms']):.1f} % slower")
+            f"the best of 0..sqrt(P) is p = {c.best_near['offset']:.0f}, {c.loss(c.best_near['total_ms']):.1f} % "
+            "slower")
     of_root = "" if c.root == c.best["offset"] else f"p = {c.root} takes {c.loss(root):.1f} % longer, "
     ring = 100 * c.best["ring_ms"] / total if total > 0 else 0
-    return (f"{c.scene}, {c.pes} PEs, {c.method}: p = {c.best['offset']:.0f} takes {total:.1f} ms, {ring:.1f} % of it on "
-            f"the ring, u of the first pass {c.best['imbalance']:.3f}; {near}; {of_root}p = 0 takes {c.loss(zero):.1f} % "
-            f"longer; the best for factors of 1 to 8: p = {c.factors}.")
+    return (f"{c.scene}, {c.pes} PEs, {c.method}: p = {c.best['offset']:.0f} takes {total:.1f} ms, {ring:.1f} % of it "
+            f"on the ring, u of the first pass {c.best['imbalance']:.3f}; {near}; {of_root}p = 0 takes "
+            f"{c.loss(zero):.1f} % longer; the best for factors of 1 to 8: p = {c.factors}.")
 
 
 def claim_of_enough(choices):
@@ -119,8 +121,8 @@ def claim_of_enough(choices):
     return Claim(papers.SPA, "section on the cyclic mapping",
                  "Offsets of 0..sqrt(P) are enough, communication with neighbours considered.",
                  verdict(none == len(near), more > 0),
-                 f"In {none} of {len(near)} cases (numbers of PEs and ways of anti-aliasing) the best of 0..sqrt(P) takes "
-                 f"at most {ENOUGH} % longer than the best of all with certainty, in {more} longer than that.")
+                 f"In {none} of {len(near)} cases (numbers of PEs and ways of anti-aliasing) the best of 0..sqrt(P) "
+                 f"takes at most {ENOUGH} % longer than the best of all with certainty, in {more} longer than that.")
 
 
 def claim_of_square(choices):
@@ -132,8 +134,8 @@ def claim_of_square(choices):
             cases, equal = cases + len(ms), equal + (ms[:, square] == ms[:, 0]).sum()
     return Claim(papers.SPA, "section on the cyclic mapping", "On n x n PEs p = n^2 is the same as p = 0.",
                  verdict(cases > 0 and equal == cases, equal < cases),
-                 f"Offset n^2 and offset 0 take the same in {equal} of {cases} cases (pictures and ways of anti-aliasing) "
-                 "on those numbers n x n of PEs for which the image has an offset of n^2.")
+                 f"Offset n^2 and offset 0 take the same in {equal} of {cases} cases (pictures and ways of "
+                 "anti-aliasing) on those numbers n x n of PEs for which the image has an offset of n^2.")
 
 
 def tables_of(every):

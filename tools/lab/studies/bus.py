@@ -14,6 +14,7 @@ what is the ring for?
 import pandas as pd
 from raya.lab import Page, Plot, Series, Table, one_of, study
 from raya.lab.laboratory import SPA, format_for
+from raya.lab.voxels import powers
 
 WAYS = {"ring": "rotations", "bus": "transfers", "bus-broadcast": "pe_broadcasts"}
 
@@ -30,15 +31,13 @@ def exchange(lab, scene, size, pes, antialias, way):
 
 def rows_of(lab, scene, size, antialias):
     rows = []
-    pes = 4
-    while pes <= min(256, size * size):
+    for pes in powers(min(256, size * size))[2:]:
         ring, bus, cast = (exchange(lab, scene, size, pes, antialias, way) for way in WAYS)
         rows.append({"anti-aliasing": antialias, "P": pes, "p": round(pes**0.5) % size, "rotations": ring[0],
                      "ring (ms)": ring[1], "transfers": bus[0], "bus (ms)": bus[1], "bus, words alone (ms)": bus[2],
                      "broadcasts": cast[0], "broadcasts, time (ms)": cast[1], "broadcasts, words alone (ms)": cast[2],
                      "bus / ring": bus[1] / ring[1], "broadcasts / ring": cast[1] / ring[1],
                      "same": ring[3] == bus[3] == cast[3]})
-        pes *= 2
     return pd.DataFrame(rows)
 
 
@@ -53,8 +52,8 @@ def finding_of_ring(rows):
     best = rows[["bus (ms)", "broadcasts, time (ms)"]].min(1)
     least = rows[["bus, words alone (ms)", "broadcasts, words alone (ms)"]].min(1)
     last = rows.iloc[-1]
-    return (f"{last['anti-aliasing']}: the ring takes least {wins_from(rows, best)}; {wins_from(rows, least)}, if the bus "
-            f"had to wait for words alone. On {last['P']} PEs it takes {last['ring (ms)']:.1f} ms for "
+    return (f"{last['anti-aliasing']}: the ring takes least {wins_from(rows, best)}; {wins_from(rows, least)}, if the "
+            f"bus had to wait for words alone. On {last['P']} PEs it takes {last['ring (ms)']:.1f} ms for "
             f"{last['rotations']} rotations, the bus {last['bus (ms)']:.1f} ms for {last['transfers']} transfers or "
             f"{last['broadcasts, time (ms)']:.1f} ms for {last['broadcasts']} broadcasts: "
             f"{best.iloc[-1] / last['ring (ms)']:.1f} times as long at best, {least.iloc[-1] / last['ring (ms)']:.1f} "
@@ -80,13 +79,13 @@ def bus(lab, scenes):
                 [*map(finding_of_ring, ways),
                  f"In {rows['same'].sum()} of {len(rows)} cases the three ways give the same image, bit for bit.",
                  "Words are why: the bus carries all pixels once for each side, or once in all, however many PEs there "
-                 "are; on the ring P links carry at once, so that a rotation's words fall as 1 / P and its number grows "
-                 "only as sqrt(P)."],
+                 "are; on the ring P links carry at once, so that a rotation's words fall as 1 / P and its number "
+                 "grows only as sqrt(P)."],
                 tables=[Table("bus", "The exchange of neighbours by each way", rows.drop(columns="same"))],
                 plots=[*map(plot_of, ways)],
                 news=["Kohata & Ito name both ways and measure the ring. Here the same exchange is made by each, on "
                       "every size of the array."],
-                clock="modelled: a rotation takes its words at 6 Mword/s, as printed, and 0.1845 ms of synchronisation, "
-                "which Tables 3 and 4 leave [D]. No time is printed for a transfer from PE to PE: it is given the same, "
-                "one transfer after another; and, as the least that it can take, its words alone. No computing is in "
-                "these times, so no factor either.")
+                clock="modelled: a rotation takes its words at 6 Mword/s, as printed, and 0.1845 ms of "
+                "synchronisation, which Tables 3 and 4 leave [D]. No time is printed for a transfer from PE to PE: it "
+                "is given the same, one transfer after another; and, as the least that it can take, its words alone. "
+                "No computing is in these times, so no factor either.")

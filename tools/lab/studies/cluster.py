@@ -48,6 +48,15 @@ def row_of(lab, scene, size):
             "supersampling alone, p = 16 (ms)": alone[16 % size]}
 
 
+def claim_of(figure, rows):
+    what, unit, column, paper, place, _ = figure
+    digits, of_scenes = 3 if paper < 10 else 0, rows[column]
+    return Claim(papers.SPA, place, f"{what}: {paper:.{digits}f}{' ' if unit else ''}{unit}.",
+                 verdict_among(paper, of_scenes),
+                 f"Of {len(rows)} scenes ours is {estimate(of_scenes).text(digits)} in the mean; another scene's lies "
+                 f"in {prediction_text(of_scenes, digits)} with 95 %.")
+
+
 @study("cluster")
 def cluster(lab, scenes):
     size, own = lab.size(256), not scenes
@@ -63,14 +72,6 @@ def cluster(lab, scenes):
         return Comparison(what, unit, paper if in_paper else None, mean.mean,
                           f"{remark}; {range_text(rows[column])} of single scenes", derived, mean.half)
 
-    def claim(figure):
-        what, unit, column, paper, place, _ = figure
-        digits = 3 if paper < 10 else 0
-        return Claim(papers.SPA, place, f"{what}: {paper:.{digits}f}{' ' if unit else ''}{unit}.",
-                     verdict_among(paper, rows[column]),
-                     f"Of {len(rows)} scenes ours is {estimate(rows[column]).text(digits)} in the mean; another scene's "
-                     f"lies in {prediction_text(rows[column], digits)} with 95 %.")
-
     seeds = f"1..{VIEWS}"
     paper = [Series("Kohata & Ito, from their tables", [papers.IMBALANCE_0], [papers.IMBALANCE_16], "paper")]
     return Page({"scenes": len(rows), "size": size, "pes": size, "factor": FACTOR, **({"seeds": seeds} if own else {})},
@@ -79,7 +80,7 @@ def cluster(lab, scenes):
                  "times as fast in total as p = 0, filter included."],
                 [comparison(figure, "sought" if own else "as it is") for figure in SOUGHT] +
                 [comparison(figure, "free" if own else "as it is") for figure in FREE],
-                [claim(figure) for figure in FREE] if in_paper else [],
+                [claim_of(figure, rows) for figure in FREE] if in_paper else [],
                 [Table("cluster", "Each scene", table, on_page=False)],
                 [Plot("cluster", "Imbalance of each scene, column split and cyclic mapping", "u(0)", "u(16)",
                       [Series("scenes", rows["u(0)"], rows["u(16)"], "points")] + (paper if in_paper else []))],

@@ -7,14 +7,15 @@ Into how many voxels should one machine cut the space of so many objects?
 - Tests count an object again in each voxel that it shares with others on the way of a ray.
 """
 import numpy as np
-import pandas as pd
 import raya
 from raya.lab import (NOT_REPRODUCED, REPRODUCED, UNDECIDED, Claim, Comparison, Page, Plot, Table, papers, series_by,
                       study)
-from raya.lab.grid import run_grid
-from raya.lab.torus import near_cube
+from raya.lab.laboratory import TESTS
+from raya.lab.voxels import near_cube, powers, run_in_one_pe, swept
 
-MOST_POWER = 13  # 8192 divisions
+DIVISIONS = powers(8192)
+COLUMNS = ("scene", "divisions", "A x B x C", "copies", "rays", "tests", "steps", "tests a ray", "steps a ray",
+           "modelled (s)", "measured (ms)", "measured, median (ms)", "objects", "voxels of an object")
 NOTICED = 1.02  # times as much: not the same
 # Name, column, and what its minimum is called.
 SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a T805 (s)", "modelled (s)",
@@ -22,7 +23,6 @@ SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a 
             "tests": ("Intersection tests against divisions", "intersection tests", "tests", "fewest tests"),
             "measured": ("Measured time against divisions", "measured time (ms)", "measured (ms)",
                          "least measured time")}
-TESTS = ("sphere_tests", "plane_tests", "polygon_tests", "cone_tests")
 
 
 def even_scenes():
@@ -32,39 +32,37 @@ def even_scenes():
 @study("divisions")
 def divisions(lab, scenes):
     size, from_paper = lab.size(96), not scenes
-    runs, settings = [], []
-    for scene in scenes or even_scenes():
-        settings.append({"scene": scene.name, "objects": scene.objects})
-        runs += [run_grid(lab, scene, near_cube(1 << k), size, runs=5) for k in range(MOST_POWER + 1)]
-    rows = pd.DataFrame([run.row() for run in runs])
+    cases = [{"scene": scene, "cut": near_cube(count)} for scene in scenes or even_scenes() for count in DIVISIONS]
+    rows = swept(cases, lambda scene, cut: run_in_one_pe(lab, scene, size, cut, runs=5), COLUMNS)
     by_scene = [some for _, some in rows.groupby("scene", sort=False)]
-    of_runs = [[run for run in runs if run.scene == some["scene"].iloc[0]] for some in by_scene]
+    settings = [some[["scene", "objects"]].iloc[0].to_dict() for some in by_scene]
     findings = [finding_of_optimum(name, by_scene) for name in SUBJECTS]
-    findings += [finding_of_loss(by_scene), finding_of_rise(by_scene), finding_of_parts(of_runs[-1])]
+    findings += [finding_of_loss(by_scene), finding_of_rise(by_scene), finding_of_parts(list(by_scene[-1]["run"]))]
     most = by_scene[-1]
     if from_paper:
         falls = {name: fall_of(most, name) for name in SUBJECTS}
-        findings.insert(0, f"1024 objects at 32 divisions, beside 1024: the time of Yoshitani & Yamazaki is "
+        findings.insert(0, "1024 objects at 32 divisions, beside 1024: the time of Yoshitani & Yamazaki is "
                         f"{papers.DIVISIONS_FALL:.1f} times as long, ours {falls['modelled']:.1f} times modelled and "
-                        f"{falls['measured']:.1f} times measured; the tests are {falls['tests']:.1f} times as many, beside "
-                        "their \"about 1/5\".")
-    shown = rows.drop(columns=["objects", "voxels of an object"])
+                        f"{falls['measured']:.1f} times measured; the tests are {falls['tests']:.1f} times as many, "
+                        "beside their \"about 1/5\".")
+    shown = rows.drop(columns=["cut", "objects", "voxels of an object", "run"])
     return Page({"size": size, "bounces": 0, "format": "fp32", "scenes": settings}, findings,
                 comparisons_of(by_scene, from_paper), claims_of(by_scene) if from_paper else [],
                 [Table("divisions", "Each number of objects and divisions", shown)],
-                [Plot(f"divisions-{name}", title, "divisions", label, series_by(rows, "scene", "divisions", column), "xy")
-                 for name, (title, label, column, _) in SUBJECTS.items()],
-                ["Yoshitani & Yamazaki print two times, of one unnamed machine and 1024 objects; here are tests, steps, "
-                 "modelled and measured times for 14 numbers of divisions and four of objects, and what the best division "
-                 "is worth."],
-                clock="two kinds that never share an axis. Modelled: the events that were counted, at what each takes a "
-                "T805 at 25 MHz, 40 ns a cycle (data sheet of the IMS T805, SGS-Thomson 1996), the making of packets among "
-                "them; no message. Measured: tracing on this device, minimum and median of five samples after a warm-up, "
-                "each of renders that take 20 ms together.", beside=papers.TP,
-                words={"kind": "64 to 1024 matt spheres, one in each of as many voxels of a cube. Our grid cuts the box of "
-                       "the spheres, which is a little smaller than that cube: some spheres lie across its planes."
-                       if from_paper else "The scenes that were named. A x B x C as near to a cube as powers of two allow, "
-                       "whatever the box."})
+                [Plot(f"divisions-{name}", title, "divisions", label, series_by(rows, "scene", "divisions", column),
+                      "xy") for name, (title, label, column, _) in SUBJECTS.items()],
+                ["Yoshitani & Yamazaki print two times, of one unnamed machine and 1024 objects; here are tests, "
+                 "steps, modelled and measured times for 14 numbers of divisions and four of objects, and what the "
+                 "best division is worth."],
+                clock="two kinds that never share an axis. Modelled: the events that were counted, at what each takes "
+                "a T805 at 25 MHz, 40 ns a cycle (data sheet of the IMS T805, SGS-Thomson 1996), the making of packets "
+                "among them; no message. Measured: tracing on this device, minimum and median of five samples after a "
+                "warm-up, each of renders that take 20 ms together.", beside=papers.TP,
+                words={"kind": "64 to 1024 matt spheres, one in each of as many voxels of a cube. Our grid cuts the "
+                       "box of the spheres, which is a little smaller than that cube: some spheres lie across its "
+                       "planes."
+                       if from_paper else "The scenes that were named. A x B x C as near to a cube as powers of two "
+                       "allow, whatever the box."})
 
 
 def least(some, name):
@@ -110,8 +108,8 @@ def finding_of_optimum(name, by_scene):
     equal = sum(b["divisions"] == b["objects"] for b in best)
     last = sum(b["divisions"] == some["divisions"].iloc[-1] for b, some in zip(best, by_scene))
     more = f"; {last} at the last division tried, so it may lie beyond" if last else ""
-    text = (f"{SUBJECTS[name][3]}: at divisions {', '.join('{} for {}'.format(b['divisions'], b['scene']) for b in best)}; "
-            f"divisions = objects is it for {equal} of {len(best)}{more}.")
+    where = ", ".join(f"{b['divisions']} for {b['scene']}" for b in best)
+    text = (f"{SUBJECTS[name][3]}: at divisions {where}; divisions = objects is it for {equal} of {len(best)}{more}.")
     return text[0].upper() + text[1:]
 
 
@@ -128,7 +126,8 @@ def finding_of_loss(by_scene):
 
 
 def finding_of_rise(by_scene):
-    rises = ", ".join(f"{over_least(some, some.iloc[-1], 'modelled'):.2f} ({some['scene'].iloc[0]})" for some in by_scene)
+    rises = ", ".join(f"{over_least(some, some.iloc[-1], 'modelled'):.2f} "
+                      f"({some['scene'].iloc[0]})" for some in by_scene)
     return f"At {by_scene[0]['divisions'].iloc[-1]} divisions the modelled time is {rises} times the least."
 
 
@@ -140,8 +139,8 @@ def finding_of_parts(runs):
         return ", ".join(f"{100 * raya.t805_ms({e: run.events[e] for e in events}) / raya.t805_ms(run.events):.0f}"
                          for run in at)
 
-    return (f"{runs[0].scene}: at {', '.join(str(run.voxels) for run in at)} divisions, tests take {shares(TESTS)} % of the "
-            f"modelled time, walking from voxel to voxel {shares(('walks', 'steps'))} %; an object lies in "
+    return (f"{runs[0].scene}: at {', '.join(str(run.voxels) for run in at)} divisions, tests take {shares(TESTS)} % "
+            f"of the modelled time, walking from voxel to voxel {shares(('walks', 'steps'))} %; an object lies in "
             f"{runs[-1].voxels_of_object:.1f} voxels at the last.")
 
 
@@ -158,14 +157,15 @@ def claims_of(by_scene):
         return all(row is not None and over_least(some, row, name) <= NOTICED for some, row in rows)
 
     def why_optimum(name):
-        return (f"{finding_of_optimum(name, by_scene)} {finding_of_loss(by_scene)} Within 2 % it would count as the least.")
+        return (f"{finding_of_optimum(name, by_scene)} {finding_of_loss(by_scene)} Within 2 % it would count as the "
+                "least.")
 
     rises = all(over_least(some, some.iloc[-1], "modelled") > NOTICED for some in by_scene)
     falls = [over_least(some, some.iloc[0], "modelled") for some in by_scene]
     are_near = [max(fall / paper, paper / fall) <= near for fall in (modelled, measured)]
     times = claim("Fig. 3", "1024 objects take 313 s with 32 divisions and 60 s with 1024, 5.2 times less.",
-                  all(are_near), f"{modelled:.2f} times less modelled, {measured:.2f} measured; a quarter more or less would "
-                  "do.")
+                  all(are_near), f"{modelled:.2f} times less modelled, {measured:.2f} measured; a quarter more or less "
+                  "would do.")
     if are_near[0] != are_near[1]:
         times.verdict = UNDECIDED
     texts = ", ".join(f"{fall:.1f} ({some['scene'].iloc[0]})" for fall, some in zip(falls, by_scene))

@@ -2,8 +2,8 @@
 
 Does our grid do what others' grids do on the same scenes?
 
-- One PE of grande in fp32, {size} x {size} rays through pixel corners{spd}, tree depth {depth} with the eye ray as 1, as
-  SPD has it. The grid cuts the box of the whole scene.
+- One PE of grande in fp32, {size} x {size} rays through pixel corners{spd}, tree depth {depth} with the eye ray as 1,
+  as SPD has it. The grid cuts the box of the whole scene.
 - A ray: every eye, reflected, refracted and shadow ray, whether it meets the box or not. Tests: with spheres, polygons
   and cylinders, of any ray. Steps: voxels that rays enter, the first one among them.
 - Where ours may differ: no mailbox, so that an object in several voxels on a ray's way is tested in each; a shadow ray
@@ -13,10 +13,10 @@ Does our grid do what others' grids do on the same scenes?
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, series_by, study
-from raya.lab.grid import run_grid
-from raya.lab.torus import sides_text
+from raya.lab.voxels import run_in_one_pe, swept
 
 BOUNCES, SPD_SIZE = 4, 513  # the eye ray is depth 1 of 5
+COLUMNS = ("scene", "A x B x C", "copies", "tests", "steps", "measured (ms)")
 
 
 def grids_for(name):
@@ -29,16 +29,15 @@ def grids_for(name):
 def havran(lab, scenes):
     size = lab.size(257)  # every other corner of SPD's 513
     own = [raya.generate.balls(4).renamed("balls"), raya.generate.lattice(12).renamed("lattice")]
-    runs = [run_grid(lab, scene, grid, size, BOUNCES, "corners")
-            for scene in scenes or own for grid in grids_for(scene.name)]
-    rows = pd.DataFrame([row_of(run) for run in runs])
-    e = pd.DataFrame([run.events for run in runs])
-    table = pd.DataFrame({
-        "scene": rows["scene"], "A x B x C": rows["sides"], "copies": [run.copies for run in runs],
-        "eye rays": e["primary"], "reflected": e["reflected"], "refracted": e["refracted"], "shadow rays": e["shadow"],
-        "walks": e["walks"], "tests": [run.tests for run in runs], "steps": e["steps"],
-        "tests a walk": [run.tests for run in runs] / e["walks"], "steps a walk": e["steps"] / e["walks"],
-        "measured (ms)": [1e3 * run.time.least for run in runs]})
+    cases = [{"scene": scene, "grid": grid} for scene in scenes or own for grid in grids_for(scene.name)]
+    table = swept(cases, lambda scene, grid: run_in_one_pe(lab, scene, size, grid, BOUNCES, "corners"), COLUMNS)
+    rows = pd.DataFrame([row_of(*some) for some in zip(table["run"], table["grid"])])
+    rays = pd.DataFrame([{"eye rays": e["primary"], "reflected": e["reflected"], "refracted": e["refracted"],
+                          "shadow rays": e["shadow"], "walks": e["walks"]} for e in (r.events for r in table["run"])])
+    table = table.drop(columns=["grid", "run"]).join(rays)
+    table["tests a walk"], table["steps a walk"] = (table[name] / table["walks"] for name in ("tests", "steps"))
+    table = table[["scene", "A x B x C", "copies", *rays.columns, "tests", "steps", "tests a walk", "steps a walk",
+                   "measured (ms)"]]
     known = rows.dropna(subset="their tests")
     published = [Series("Havran & Sixta", known["their steps"], known["their tests"], "paper")] if len(known) else []
     return Page({"size": size, "bounces": BOUNCES, "sampling": "corners", "format": "fp32"},
@@ -49,14 +48,14 @@ def havran(lab, scenes):
                 tables=[Table("havran", "What was counted", table)],
                 plots=[Plot("havran", "Tests against steps a ray", "steps a ray", "tests a ray",
                             series_by(rows, "scene", "steps", "tests", style="points") + published, "xy")],
-                beside=papers.GRID, words={"spd": "" if size == SPD_SIZE else " (SPD: 513 x 513)", "depth": BOUNCES + 1})
+                beside=papers.GRID,
+                words={"spd": "" if size == SPD_SIZE else " (SPD: 513 x 513)", "depth": BOUNCES + 1})
 
 
-def row_of(run):
-    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, run.divisions), (None, None))
-    return {"scene": run.scene, "sides": sides_text(run.divisions), "tests": run.tests / run.rays,
-            "steps": run.events["steps"] / run.rays, "beyond": (run.events["steps"] - run.events["walks"]) / run.rays,
-            "their tests": tests, "their steps": steps}
+def row_of(run, grid):
+    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, grid), (None, None))
+    return {"scene": run.scene, "sides": run.sides, "tests": run.tests_per_ray, "steps": run.steps_per_ray,
+            "beyond": (run.steps - run.events["walks"]) / run.rays, "their tests": tests, "their steps": steps}
 
 
 def comparisons_of(row):
@@ -85,4 +84,5 @@ def finding_of_finer(coarse, fine):
         theirs = (f"; theirs to {fine['their tests'] / coarse['their tests']:.2f} and "
                   f"{fine['their steps'] / coarse['their steps']:.2f}")
     return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests fall to "
-            f"{fine['tests'] / coarse['tests']:.2f}, steps grow to {fine['steps'] / coarse['steps']:.2f} times{theirs}.")
+            f"{fine['tests'] / coarse['tests']:.2f}, steps grow to {fine['steps'] / coarse['steps']:.2f} "
+            f"times{theirs}.")

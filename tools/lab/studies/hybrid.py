@@ -3,11 +3,11 @@
 In how many groups should the nodes share the screen, and what does memory allow?
 
 - {nodes} nodes in G groups, each a 3-D torus of {nodes} / G nodes that holds the whole scene and renders the pixels p
-  with p mod G = g at {size} x {size}, p counted row by row: each row is shifted by {size} mod G against the one above it,
-  as in a cyclic mapping. fp32; all nodes of a group make primary rays and are charged for those that they make and
+  with p mod G = g at {size} x {size}, p counted row by row: each row is shifted by {size} mod G against the one above
+  it, as in a cyclic mapping. fp32; all nodes of a group make primary rays and are charged for those that they make and
   discard.
-- Each group cuts the scene into the same voxels, laid out cyclically on its nodes, so that all G do the same work. G = 1
-  divides space alone, G as many as nodes divides the screen alone.
+- Each group cuts the scene into the same voxels, laid out cyclically on its nodes, so that all G do the same work. G =
+  1 divides space alone, G as many as nodes divides the screen alone.
 - The machine's time is that of its slowest group; speed-up is against one node that has all pixels and the same voxels.
   How the groups' roots hand their pixels to the host is not modelled.
 - Memory: the part of the scene that the fullest node holds; with it the shortest queue and mailboxes that a hit can ask
@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, series_by, study
-from raya.lab.torus import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, run_on_torus, sides_text
+from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text
 
 NODES, SIDES = 64, (4, 8)  # voxels along each axis, of every group: the paper's, finer
 MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: the SPA's, a board's
@@ -42,7 +42,7 @@ def row_of(lab, scene, size, sides, groups):
 
 def rows_of(lab, scene, size, sides):
     """1, 2, 4, ... groups."""
-    rows = pd.DataFrame([row_of(lab, scene, size, sides, 1 << k) for k in range(NODES.bit_length())])
+    rows = pd.DataFrame([row_of(lab, scene, size, sides, groups) for groups in powers(NODES)])
     # With a node a group none sends a message or discards a ray: together they compute what one node alone would.
     for bound in ("overlapped", "stepwise"):
         rows[f"speed-up, {bound}"] = rows["work"].iloc[-1] / rows[f"{bound} (ms)"]
@@ -66,12 +66,13 @@ def hybrid(lab, scenes):
     return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": NODES, "voxels": list(SIDES),
                  "links": "torus3d", "format": "fp32", "bounces": BOUNCES}, findings_of(every),
                 [Comparison(f"best G, {r['scene'][0]}, {r['voxels'][0]} voxels", "groups", None,
-                            int(r["groups"][r["overlapped (ms)"].idxmin()]), "modelled, overlapped, whatever the memory")
-                 for r in every],
+                            int(r["groups"][r["overlapped (ms)"].idxmin()]),
+                            "modelled, overlapped, whatever the memory") for r in every],
                 tables=[Table("hybrid", "Time of the whole machine", times),
                         Table("hybrid-memory", "Memory of the fullest node", memory)], plots=plots_of(rows),
-                news=["Yoshitani & Yamazaki name the combination of screen and space division (Harada et al. 1995, their "
-                      "reference [1]) and do not try it; here every number of groups is weighed, in time and in memory."],
+                news=["Yoshitani & Yamazaki name the combination of screen and space division (Harada et al. 1995, "
+                      "their reference [1]) and do not try it; here every number of groups is weighed, in time and in "
+                      "memory."],
                 clock=CLOCK)
 
 
@@ -90,7 +91,8 @@ def findings_of(every):
     def best(bound):
         def text(r):
             i = r[f"{bound} (ms)"].idxmin()
-            return f"G = {r['groups'][i]}, speed-up {r[f'speed-up, {bound}'][i]:.1f} ({r[f'speed-up, {bound}'][0]:.1f} with one group)"
+            speedup = r[f"speed-up, {bound}"]
+            return f"G = {r['groups'][i]}, speed-up {speedup[i]:.1f} ({speedup[0]:.1f} with one group)"
         return text
 
     def memory(name):

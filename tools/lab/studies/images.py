@@ -31,8 +31,7 @@ def rows_of(pictures, objects, pes, offset):
     for name, values in zip(("p = 0", f"p = {offset}"), u):
         rows[f"u, {name}"] = values
         rows[f"efficiency, {name}"] = 1 / (1 + np.array(values))
-    return rows.set_axis([*rows.columns[:4], "u, p = 0", "efficiency, p = 0", f"u, p = {offset}",
-                          f"efficiency, p = {offset}"], axis=1)
+    return rows
 
 
 @study("images")
@@ -44,7 +43,7 @@ def images(lab, scenes):
     rows = rows_of(pictures, [scene.objects for scene in some] * 2, pes, p)
     columns, cyclic = "efficiency, p = 0", f"efficiency, p = {p}"
     more = groups_of(lab, scenes, pes)
-    groups = {f"scenes at {side} x {side}": rows[rows["side (pixels)"] == side] for side in rows["side (pixels)"].unique()}
+    groups = {f"scenes at {side} x {side}": some for side, some in rows.groupby("side (pixels)", sort=False)}
     groups.update({label: rows_of(group, 0, pes, p) for label, (_, group) in more.items()})
     every = pd.concat([rows, *list(groups.values())[-len(more):]], ignore_index=True)
     return Page({"pes": pes, "offset": p, "images": len(rows), "groups": list(more)},
@@ -72,8 +71,8 @@ def groups_of(lab, scenes, size):
         for i in range(1, VIEWS + 1):
             n = FEWEST + (i - 1) % (MOST - FEWEST + 1)
             pictures.append(lab.costs(raya.generate.random(n, i).renamed(f"random-{n}, seed {i}"), size))
-        groups["random scenes"] = (f"{VIEWS} random scenes of {FEWEST} to {MOST} spheres, `raya generate random`, of the "
-                                   f"seeds 1..{VIEWS}.", pictures)
+        groups["random scenes"] = (f"{VIEWS} random scenes of {FEWEST} to {MOST} spheres, `raya generate random`, of "
+                                   f"the seeds 1..{VIEWS}.", pictures)
     return groups
 
 
@@ -84,9 +83,9 @@ def claim_of_columns(every, columns, cyclic):
     beyond = estimate(off[columns] - strongly * off[cyclic])
     return Claim(papers.SPA, "section on the experiments", "The column split's efficiency varies strongly over the "
                  "images.", verdict(beyond.low > 0, beyond.high <= 0),
-                 f"Over all {len(every)} images the column split's efficiency is {off[columns].mean():.3f} from its mean "
-                 f"in the mean, the cyclic mapping's {off[cyclic].mean():.3f}; strongly is called {strongly} times as "
-                 "much or more.")
+                 f"Over all {len(every)} images the column split's efficiency is {off[columns].mean():.3f} from its "
+                 f"mean in the mean, the cyclic mapping's {off[cyclic].mean():.3f}; strongly is called {strongly} "
+                 "times as much or more.")
 
 
 def claim_of_cyclic(every, cyclic):
@@ -118,10 +117,10 @@ def findings_of(groups, rows, columns, cyclic, p):
     rest = (f"The column split is the better one for {lost} of {len(rows)} images." if lost else
             f"It is never below the column split on {len(rows)} images.")
     return [f"Mean efficiency of p = 0 and of the cyclic mapping: {means}.",
-            f"Of the scenes' own pictures efficiency is {rows[columns].min():.3f} to {rows[columns].max():.3f} with the "
-            f"column split and {rows[cyclic].min():.3f} to {rows[cyclic].max():.3f} with p = {p}.",
-            f"The cyclic mapping's lowest is {worst['scene']} at {size}: {worst[cyclic]:.3f}, where the column split has "
-            f"{worst[columns]:.3f}. {rest}"]
+            f"Of the scenes' own pictures efficiency is {rows[columns].min():.3f} to {rows[columns].max():.3f} with "
+            f"the column split and {rows[cyclic].min():.3f} to {rows[cyclic].max():.3f} with p = {p}.",
+            f"The cyclic mapping's lowest is {worst['scene']} at {size}: {worst[cyclic]:.3f}, where the column split "
+            f"has {worst[columns]:.3f}. {rest}"]
 
 
 def comparisons_of(rows, columns, cyclic, pes):

@@ -4,18 +4,18 @@ import pandas as pd
 import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, each_of, estimate, papers,
                       prediction_text, range_text, settings_of_pass, study, verdict, verdict_among)
-from raya.lab.lattice import shortest_vector
+from raya.lab.laboratory import VIEWS_PROSE
+from raya.lab.mappings import shortest_vector
+
+U_AND_VIEWS = """
+- u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
+  modelled cycles. No clock is needed.""" + VIEWS_PROSE
 
 PROSE_8 = """Fig. 8: imbalance against the offset
 
 Which offset of the cyclic mapping spreads the load best?
 
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass.
-- u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
-  modelled cycles. No clock is needed.
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
-  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %.
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass.""" + U_AND_VIEWS + """
 - Offsets are compared in the same views. "Best" is reproduced where every other offset of 0..n is worse, the {tests}
   differences together with 95 % (Bonferroni); it is not reproduced where one is better with that certainty.
 - A figure that Kohata & Ito have for one picture counts as reproduced where it lies in the 95 % prediction interval of
@@ -26,12 +26,7 @@ PROSE_13 = """Fig. 13: imbalance against the offset in supersampling
 
 Does the offset that suits the first pass suit supersampling as well?
 
-- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling alone.
-- u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
-  modelled cycles. No clock is needed.
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
-  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %.
+- {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; supersampling alone.""" + U_AND_VIEWS + """
 - Offsets are compared in the same views, {tests} differences together with 95 % (Bonferroni)."""
 
 GOOD = 0.9  # ours: the part of all that an offset of 0..n gains over p = 0, from which on the balance is good
@@ -44,55 +39,19 @@ def page_of(name, lab, scenes, first):
     u = raya.imbalances(picture, size, offsets)
     of_views = np.array([raya.imbalances(view, size, offsets) for view in views])  # [view, offset]
     means = [estimate(column) for column in of_views.T]
-    mean = np.array([m.mean for m in means])
     best = of_views <= of_views[:, :n + 1].min(1, keepdims=True)
     rows = pd.DataFrame({
-        "p": offsets, "u": u, "mean u": mean, "+-": [m.half for m in means], "least u": of_views.min(0),
-        "largest u": of_views.max(0), f"best of 0..{n} (views)": best.sum(0),
+        "p": offsets, "u": u, "mean u": [m.mean for m in means], "+-": [m.half for m in means],
+        "least u": of_views.min(0), "largest u": of_views.max(0), f"best of 0..{n} (views)": best.sum(0),
         "shortest vector (pixels)": [shortest_vector(p, size) for p in offsets]})
-    in_paper = first and papers.printed(True, scene, size)
+    in_paper = first and papers.is_papers(scene, size)
     near = rows[:n + 1]
-    best_near = int(near["mean u"].idxmin())
-    differences = [estimate(of_views[:, p] - of_views[:, n], each_of(n)) for p in range(n)]
-    worse = sum(d.low > 0 for d in differences)
-    better = sum(d.high < 0 for d in differences)
     place = "Fig. 8" if first else "Fig. 13"
-
-    why_best = (f"Over {len(views)} views mean u is {means[n].text()} at p = {n}; the lowest of 0..{n} is that of p = "
-                f"{best_near}, {means[best_near].text()}. Of the {n} other offsets {worse} are worse than p = {n} and "
-                f"{better} are better with certainty; p = {n} is the best of them in {best[:, n].sum()} of {len(views)} "
-                "views.")
-    gain = estimate(of_views[:, 0] - of_views[:, n])
-    claims = [Claim(papers.SPA, place, "The cyclic mapping with p = n balances better than p = 0.",
-                    verdict(gain.low > 0, gain.high <= 0),
-                    f"u falls by {gain.text()} from p = 0 to p = {n} in the same view, {len(views)} views."),
-              Claim(papers.SPA, place, "Of the offsets 0..n on n x n PEs p = n gives the best balance.",
-                    verdict(worse == n, better > 0), why_best)]
-    if first:
-        gains = of_views[:, 0] - of_views[:, :n + 1].min(1)
-        half = estimate(np.divide(of_views[:, 0] - of_views[:, n // 2], gains, out=np.ones_like(gains),
-                                  where=gains > 0))
-        claims.append(Claim(papers.SPA, place, "The balance is already good at p = 8, half of n.",
-                            verdict(half.low >= GOOD, half.high < GOOD),
-                            f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; good is "
-                            f"called a part of {GOOD} or more."))
-    if in_paper:
-        claims.append(Claim(papers.SPA, place, "u is 0.118 at p = 16 (derived from Table 3).",
-                            verdict_among(papers.IMBALANCE_16, of_views[:, n]),
-                            f"Over {len(views)} views u(16) is {means[n].text()} in the mean and "
-                            f"{range_text(of_views[:, n])} in single ones, so the figure of one picture is a draw: with "
-                            f"95 % it lies in {prediction_text(of_views[:, n])}."))
-
-    def at(p):
-        return p % size
-
-    findings = [f"Over {len(views)} views u is {means[0].text()} at p = 0, {means[at(8)].text()} at p = 8 and "
-                f"{means[at(16)].text()} at p = 16.",
-                why_best,
-                f"In the picture u is {u[0]:.3f} at p = 0, {u[at(8)]:.3f} at p = 8 and {u[at(16)]:.3f} at p = 16. Of "
-                f"the offsets 0..{n} p = {u[:n + 1].argmin()} is best, u = {u[:n + 1].min():.3f}; of all {size} p = "
-                f"{u.argmin()}, u = {u.min():.3f}. {(u < u[at(16)]).sum()} offsets are better than p = 16."]
-    return Page(settings_of_pass(scene, size, views), findings, comparisons_of(rows, of_views, n, in_paper), claims,
+    claims = [claim_of_gain(place, of_views, n), claim_of_best(place, of_views, means, n)]
+    claims += [claim_of_half(place, of_views, n)] if first else []
+    claims += [claim_of_figure(place, of_views, means, n)] if in_paper else []
+    return Page(settings_of_pass(scene, size, views), findings_of(u, means, n, claims[1].why, len(views)),
+                comparisons_of(rows, of_views, n, in_paper), claims,
                 [Table(f"{name}-near", f"Offsets 0..{n}: the picture's u and that of {len(views)} views", near),
                  Table(name, "Imbalance for each offset", rows, on_page=False)],
                 plots_of(name, scene, "first pass" if first else "supersampling alone", rows, near, len(views),
@@ -100,6 +59,54 @@ def page_of(name, lab, scenes, first):
                 ["Kohata & Ito drew u for one picture. Which offset is best changes from view to view; means over many "
                  "views with intervals tell what belongs to the offset."],
                 words={"tests": n}, beside=papers.SPA)
+
+
+def claim_of_gain(place, of_views, n):
+    gain = estimate(of_views[:, 0] - of_views[:, n])
+    return Claim(papers.SPA, place, "The cyclic mapping with p = n balances better than p = 0.",
+                 verdict(gain.low > 0, gain.high <= 0),
+                 f"u falls by {gain.text()} from p = 0 to p = {n} in the same view, {len(of_views)} views.")
+
+
+def claim_of_best(place, of_views, means, n):
+    differences = [estimate(of_views[:, p] - of_views[:, n], each_of(n)) for p in range(n)]
+    worse, better = sum(d.low > 0 for d in differences), sum(d.high < 0 for d in differences)
+    lowest = min(range(n + 1), key=lambda p: means[p].mean)
+    often = (of_views[:, n] <= of_views[:, :n + 1].min(1)).sum()
+    return Claim(papers.SPA, place, "Of the offsets 0..n on n x n PEs p = n gives the best balance.",
+                 verdict(worse == n, better > 0),
+                 f"Over {len(of_views)} views mean u is {means[n].text()} at p = {n}; the lowest of 0..{n} is that of "
+                 f"p = {lowest}, {means[lowest].text()}. Of the {n} other offsets {worse} are worse than p = {n} and "
+                 f"{better} are better with certainty; p = {n} is the best of them in {often} of {len(of_views)} "
+                 "views.")
+
+
+def claim_of_half(place, of_views, n):
+    gains = of_views[:, 0] - of_views[:, :n + 1].min(1)
+    half = estimate(np.divide(of_views[:, 0] - of_views[:, n // 2], gains, out=np.ones_like(gains), where=gains > 0))
+    return Claim(papers.SPA, place, "The balance is already good at p = 8, half of n.",
+                 verdict(half.low >= GOOD, half.high < GOOD),
+                 f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; good is called a part "
+                 f"of {GOOD} or more.")
+
+
+def claim_of_figure(place, of_views, means, n):
+    single = of_views[:, n]
+    return Claim(papers.SPA, place, "u is 0.118 at p = 16 (derived from Table 3).",
+                 verdict_among(papers.IMBALANCE_16, single),
+                 f"Over {len(single)} views u(16) is {means[n].text()} in the mean and {range_text(single)} in single "
+                 "ones, so the figure of one picture is a draw: with 95 % it lies in "
+                 f"{prediction_text(single)}.")
+
+
+def findings_of(u, means, n, why_best, views):
+    half, best = 8 % len(u), 16 % len(u)  # the paper's
+    return [f"Over {views} views u is {means[0].text()} at p = 0, {means[half].text()} at p = 8 and "
+            f"{means[best].text()} at p = 16.",
+            why_best,
+            f"In the picture u is {u[0]:.3f} at p = 0, {u[half]:.3f} at p = 8 and {u[best]:.3f} at p = 16. Of the "
+            f"offsets 0..{n} p = {u[:n + 1].argmin()} is best, u = {u[:n + 1].min():.3f}; of all {len(u)} p = "
+            f"{u.argmin()}, u = {u.min():.3f}. {(u < u[best]).sum()} offsets are better than p = 16."]
 
 
 def comparisons_of(rows, of_views, n, in_paper):

@@ -3,38 +3,33 @@
 From how many nodes on does the root hold the machine up?
 
 - {scene} at {size} x {size} on 1 to {nodes} nodes of a 3-D torus, doubling, one voxel a node, fp32. Root: it makes all
-  primary rays, one after another, and sends each to where it enters the box, as Yoshitani & Yamazaki have it. All: every
-  node makes those that enter at its voxel, and is charged for those that it makes and discards. Either way ray packets
-  have 16 words, and each term of a ray is a return.
+  primary rays, one after another, and sends each to where it enters the box, as Yoshitani & Yamazaki have it. All:
+  every node makes those that enter at its voxel, and is charged for those that it makes and discards. Either way ray
+  packets have 16 words, and each term of a ray is a return.
 - The root's time is the greater of its processor's, computing and messages, and its busiest link's. Contributions to
   pixels come home to the root either way.
 - One node has the whole scene in one voxel, and is its own root: where more nodes are more than so many times as fast,
   it is the grid's doing.
 """
-import pandas as pd
 from raya.lab import Page, Plot, Series, Table, series_by, study
-from raya.lab.torus import BOUNCES, CLOCK, even_scene, near_cube, run_on_torus
+from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers, run_on_torus, swept
 
 MOST, PART = 512, 1.1  # PART: times as long; more than this and the two ways have parted
+CASES = [{"nodes": nodes, "inject": way} for nodes in powers(MOST) for way in ("root", "all")]
+COLUMNS = ("supersteps", "overlapped (ms)", "stepwise (ms)", "the root's processor (ms)",
+           "the root's busiest link (ms)", "root / overlapped (%)", "busiest link (bytes)", "packets",
+           "rays thrown away", "hops a packet", "most packets in a queue", "primary")
 
 
 @study("inject", one_scene=True)
 def inject(lab, scenes):
     scene = scenes[0] if scenes else even_scene(8320)
-    size, rows, nodes = lab.size(64), [], 1
-    while nodes <= MOST:
-        for way in ("root", "all"):
-            run = run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes), inject=way)
-            rows.append({"nodes": nodes, "inject": way, "supersteps": run.supersteps,
-                         "overlapped (ms)": run.overlapped_ms, "stepwise (ms)": run.stepwise_ms,
-                         "the root's processor (ms)": run.root_processor_ms,
-                         "the root's busiest link (ms)": run.root_link_ms,
-                         "root / overlapped (%)": 100 * run.root_ms / run.overlapped_ms,
-                         "busiest link (bytes)": run.busiest_link_bytes, "packets": run.packets,
-                         "rays thrown away": run.discarded, "hops a packet": run.hops_per_packet,
-                         "most packets in a queue": run.queue_max, "rays": run.events["primary"]})
-        nodes *= 2
-    rows = pd.DataFrame(rows)
+    size = lab.size(64)
+
+    def run(nodes, inject):
+        return run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes), inject=inject)
+
+    rows = swept(CASES, run, COLUMNS)
     root, every = (rows[rows["inject"] == way].reset_index() for way in ("root", "all"))
     return Page({"scene": scene.name, "size": size, "nodes": MOST, "links": "torus3d", "format": "fp32",
                  "bounces": BOUNCES},
@@ -42,7 +37,8 @@ def inject(lab, scenes):
                  f"{bound_text(root)}, where all nodes do {bound_text(every)}.",
                  finding_of_limit(root, every), finding_of_parting(root, every), finding_of_making(every.iloc[-1]),
                  finding_of_supersteps(root.iloc[-1], every.iloc[-1])],
-                tables=[Table("inject", "The root or all nodes make the primary rays", rows.drop(columns="rays"))],
+                tables=[Table("inject", "The root or all nodes make the primary rays",
+                              rows.drop(columns=["primary", "run"]))],
                 plots=[Plot("inject", "Time against the number of nodes", "nodes", "modelled ms",
                             [Series(f"{some['inject'][0]}, {bound}", some["nodes"], some[f"{bound} (ms)"])
                              for some in (root, every) for bound in ("overlapped", "stepwise")], "xy"),
@@ -50,8 +46,8 @@ def inject(lab, scenes):
                             series_by(rows, "inject", "nodes", "root / overlapped (%)"), "x"),
                        Plot("inject-supersteps", "Supersteps", "nodes", "supersteps",
                             series_by(rows, "inject", "nodes", "supersteps"), "xy")],
-                news=["Yoshitani & Yamazaki let the root send all rays and do not ask what that costs; here both ways stand "
-                      "side by side, from 1 to 512 nodes."], clock=CLOCK)
+                news=["Yoshitani & Yamazaki let the root send all rays and do not ask what that costs; here both ways "
+                      "stand side by side, from 1 to 512 nodes."], clock=CLOCK)
 
 
 def bound_text(rows):
@@ -65,8 +61,8 @@ def finding_of_limit(root, every):
     a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, every))
     one = every["overlapped (ms)"][0]
     return (f"Injection by the root ends at {a['overlapped (ms)']:.0f} ms on {a['nodes']} nodes, "
-            f"{one / a['overlapped (ms)']:.1f} times as fast as one node; by all nodes at {b['overlapped (ms)']:.0f} ms on "
-            f"{b['nodes']}, {one / b['overlapped (ms)']:.1f} times.")
+            f"{one / a['overlapped (ms)']:.1f} times as fast as one node; by all nodes at {b['overlapped (ms)']:.0f} "
+            f"ms on {b['nodes']}, {one / b['overlapped (ms)']:.1f} times.")
 
 
 def finding_of_parting(root, every):
@@ -75,16 +71,17 @@ def finding_of_parting(root, every):
     parted = ratio[ratio > PART]
     if not len(parted):
         return f"The two ways never part by more than 10 %: {last}."
-    return (f"The two ways part by more than 10 % at {every['nodes'][parted.index[0]]} nodes: {parted.iloc[0]:.2f} times as "
-            f"long; {last}.")
+    return (f"The two ways part by more than 10 % at {every['nodes'][parted.index[0]]} nodes: {parted.iloc[0]:.2f} "
+            f"times as long; {last}.")
 
 
 def finding_of_making(row):
-    return (f"{row['nodes']} nodes that make their own primary rays make {1 + row['rays thrown away'] / row['rays']:.1f} "
-            "for each that they keep, all of which they are charged for: the other rays of their windows enter elsewhere.")
+    return (f"{row['nodes']} nodes that make their own primary rays make "
+            f"{1 + row['rays thrown away'] / row['primary']:.1f} for each that they keep, all of which they are "
+            "charged for: the other rays of their windows enter elsewhere.")
 
 
 def finding_of_supersteps(root, every):
     return (f"Stepwise the root's way takes {root['stepwise (ms)'] / every['stepwise (ms)']:.2f} times as long with "
-            f"{root['nodes']} nodes, in {root['supersteps']} supersteps against {every['supersteps']}: the root makes no "
-            "more rays at a time than an eighth of its queue holds.")
+            f"{root['nodes']} nodes, in {root['supersteps']} supersteps against {every['supersteps']}: the root makes "
+            "no more rays at a time than an eighth of its queue holds.")

@@ -3,7 +3,8 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, estimate, papers, range_text,
-                      settings_of_pass, study, verdict)
+                      settings_of_pass, study, verdict, with_paper)
+from raya.lab.laboratory import VIEWS_PROSE
 
 PROSE = """{figure}
 
@@ -11,10 +12,7 @@ PROSE = """{figure}
 
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; {phase}.
 - Loads are the sums of the modelled cycles that the kernels counted for each pixel, over the mean load of all PEs: no
-  clock is needed.
-- Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
-  distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %."""
+  clock is needed.""" + VIEWS_PROSE
 
 FLAT = 0.1  # ours: mean loads by which the middle may differ from the sides and yet be called flat
 
@@ -37,61 +35,66 @@ def page_of(name, lab, scenes, first):
     offsets = (0, 16 % size)
     own = [shares(picture, p) for p in offsets]
     of_views = [np.array([shares(view, p) for view in views]) for p in offsets]  # [view, PE]
-    means = [[estimate(column) for column in some.T] for some in of_views]
     u = [np.array([raya.imbalances(view, size, [p])[0] for view in views]) for p in offsets]
     own_u = [raya.imbalances(picture, size, [p])[0] for p in offsets]
-    hump = []
-    for some in of_views:
-        middle, sides = middle_and_sides(some)
-        hump.append(estimate(middle - sides))
     rows = pd.DataFrame({"PE": range(size), "p = 0 (cycles)": raya.loads(picture, offset=0),
                          "p = 16 (cycles)": raya.loads(picture, offset=offsets[1])})
-    for label, some in (("p = 0", means[0]), ("p = 16", means[1])):
-        rows[f"{label}, mean of views"] = [m.mean for m in some]
-        rows[f"{label}, +-"] = [m.half for m in some]
-
-    in_paper = first and papers.printed(True, scene, size)
-    figure = papers.IMBALANCE_0 if in_paper else None, papers.IMBALANCE_16 if in_paper else None
-    remarks = ("calibrated on: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
-    mean_u = [estimate(some) for some in u]
-    comparisons = [Comparison(f"u({p})", "", figure[i], own_u[i], remarks[i], derived=True)
-                   for i, p in enumerate((0, 16))]
-    comparisons += [Comparison(f"u({p}), mean of views", "", figure[i], mean_u[i].mean, derived=True,
-                               half_width=mean_u[i].half) for i, p in enumerate((0, 16))]
-
-    place = "Fig. 7" if first else "Fig. 12"
-    over = f"Over {len(views)} views a PE of the middle quarter carries "
-    flat = hump[1].low >= -FLAT and hump[1].high <= FLAT
-    uneven = hump[1].high < -FLAT or hump[1].low > FLAT
-    claims = [Claim(papers.SPA, place, "With p = 0 the load has a hump in the middle.",
-                    verdict(hump[0].low > 0, hump[0].high <= 0),
-                    f"{over}{hump[0].text(2)} mean loads more than one of the quarter at the sides."),
-              Claim(papers.SPA, place, "With p = 16 the load is flat.", verdict(flat, uneven),
-                    f"{over}{hump[1].text(2)} mean loads more than one at the sides; flat is called what is within "
-                    f"{FLAT}.")]
-    middle, sides = middle_and_sides(own[0])
-    findings = [f"In the picture the PEs of the middle quarter carry {middle:.2f} times the mean load with columns and "
-                f"those of the quarter at the sides {sides:.2f} times; with p = 16 the lightest PE carries "
-                f"{own[1].min():.2f} times and the heaviest {1 + own_u[1]:.2f} times the mean.",
-                f"Over {len(views)} views u is {mean_u[0].text()} with columns ({range_text(u[0])}) and "
-                f"{mean_u[1].text()} with p = 16 ({range_text(u[1])})."]
-    some = rows[rows["PE"] % max(size // 64, 1) == 0]
-    labels = ("p = 0, column split", "p = 16, cyclic mapping")
-    mean_line = Series("mean", [0, size - 1], [1, 1])
-    phase = "first pass" if first else "supersampling alone"
-    plots = [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
-                  [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
-             Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {len(views)} views", "PE", "load / mean load",
-                  [Series(label, some["PE"], some[f"{p}, mean of views"], half_widths=some[f"{p}, +-"])
-                   for label, p in zip(labels, ("p = 0", "p = 16"))] + [mean_line])]
-    return Page({**settings_of_pass(scene, size, views), "offsets": list(offsets)}, findings, comparisons, claims,
-                [Table(name, "Load of each PE", rows, on_page=False)], plots,
+    for label, some in zip(("p = 0", "p = 16"), of_views):
+        means = [estimate(column) for column in some.T]
+        rows[f"{label}, mean of views"], rows[f"{label}, +-"] = [m.mean for m in means], [m.half for m in means]
+    place, phase = ("Fig. 7", "first pass") if first else ("Fig. 12", "supersampling alone")
+    return Page({**settings_of_pass(scene, size, views), "offsets": list(offsets)}, findings_of(own, own_u, u),
+                comparisons_of(own_u, u, first and papers.is_papers(scene, size)), claims_of(place, of_views),
+                [Table(name, "Load of each PE", rows, on_page=False)],
+                plots_of(name, scene, phase, rows, own, len(views)),
                 ["Kohata & Ito show one image. Many views of a scene tell what belongs to the mapping and what to the "
                  "picture."], beside=papers.SPA,
                 words={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase,
                        "question": "How is the work of one image spread over the PEs, by columns and by the cyclic "
                        "mapping?" if first else "Is the extra work of supersampling spread as evenly as the first "
                        "pass?"})
+
+
+def findings_of(own, own_u, u):
+    (middle, sides), mean_u = middle_and_sides(own[0]), [estimate(some) for some in u]
+    return [f"In the picture the PEs of the middle quarter carry {middle:.2f} times the mean load with columns and "
+            f"those of the quarter at the sides {sides:.2f} times; with p = 16 the lightest PE carries "
+            f"{own[1].min():.2f} times and the heaviest {1 + own_u[1]:.2f} times the mean.",
+            f"Over {len(u[0])} views u is {mean_u[0].text()} with columns ({range_text(u[0])}) and {mean_u[1].text()} "
+            f"with p = 16 ({range_text(u[1])})."]
+
+
+def comparisons_of(own_u, u, in_paper):
+    figures = papers.IMBALANCE_0, papers.IMBALANCE_16
+    remarks = ("calibrated on: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
+    mean_u = [estimate(some) for some in u]
+    return with_paper(in_paper, [
+        *(Comparison(f"u({p})", "", figures[i], own_u[i], remarks[i], derived=True) for i, p in enumerate((0, 16))),
+        *(Comparison(f"u({p}), mean of views", "", figures[i], mean_u[i].mean, derived=True, half_width=mean_u[i].half)
+          for i, p in enumerate((0, 16)))])
+
+
+def claims_of(place, of_views):
+    columns, cyclic = (estimate(np.subtract(*middle_and_sides(some))) for some in of_views)
+    over = f"Over {len(of_views[0])} views a PE of the middle quarter carries "
+    return [Claim(papers.SPA, place, "With p = 0 the load has a hump in the middle.",
+                  verdict(columns.low > 0, columns.high <= 0),
+                  f"{over}{columns.text(2)} mean loads more than one of the quarter at the sides."),
+            Claim(papers.SPA, place, "With p = 16 the load is flat.",
+                  verdict(cyclic.low >= -FLAT and cyclic.high <= FLAT, cyclic.high < -FLAT or cyclic.low > FLAT),
+                  f"{over}{cyclic.text(2)} mean loads more than one at the sides; flat is called what is within "
+                  f"{FLAT}.")]
+
+
+def plots_of(name, scene, phase, rows, own, views):
+    some = rows[rows["PE"] % max(len(rows) // 64, 1) == 0]
+    labels = ("p = 0, column split", "p = 16, cyclic mapping")
+    mean_line = Series("mean", [0, len(rows) - 1], [1, 1])
+    return [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
+                 [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
+            Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {views} views", "PE", "load / mean load",
+                 [Series(label, some["PE"], some[f"{p}, mean of views"], half_widths=some[f"{p}, +-"])
+                  for label, p in zip(labels, ("p = 0", "p = 16"))] + [mean_line])]
 
 
 @study("fig7", prose=PROSE, one_scene=True)

@@ -2,51 +2,52 @@
 
 How many transputers are worth having, and what is it that they wait for?
 
-- {size} x {size} pixels on 1, 2, 4, ... nodes, their sides as alike as powers of two allow; fp32, all nodes make primary
-  rays and are charged for those that they make and discard; ray packets of 16 words, a return for each term; queues of
-  {queue} packets.
-- Two ways to cut the scene: one voxel a node, as Yoshitani & Yamazaki do, and {voxels} voxels laid out cyclically on any
-  number of nodes. With the latter all machines do the same work, so their speed-up is that of the nodes alone; with the
-  former it is that of a finer grid as well.
+- {size} x {size} pixels on 1, 2, 4, ... nodes, their sides as alike as powers of two allow; fp32, all nodes make
+  primary rays and are charged for those that they make and discard; ray packets of 16 words, a return for each term;
+  queues of {queue} packets.
+- Two ways to cut the scene: one voxel a node, as Yoshitani & Yamazaki do, and {voxels} voxels laid out cyclically on
+  any number of nodes. With the latter all machines do the same work, so their speed-up is that of the nodes alone; with
+  the former it is that of a finer grid as well.
 - A processor has its part in each message at either end; u and tests are of computing alone.
 - 2-D: slabs of nodes next to one another, four links a node as a T805 has them; 3-D: six.
-- A series ends where supersteps times nodes would come to more than {launches}: rays that have to visit all voxels, such
-  as those from far away on a plane, make very many supersteps.
+- A series ends where supersteps times nodes would come to more than {launches}: rays that have to visit all voxels,
+  such as those from far away on a plane, make very many supersteps.
 """
 import pandas as pd
 from raya.lab import Comparison, Page, Plot, Series, Table, study
-from raya.lab.torus import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, run_on_torus, sides_text
+from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers, run_on_torus, sides_text
 
 QUEUE = 256  # so short that the queues of 4096 nodes are no burden, and long enough for the project's scenes
 MOST, SIDES, MOST_LAUNCHES = 4096, 16, 1 << 22
+VOXELS = sides_text((SIDES,) * 3)
+COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a ray", "steps a ray", "rays thrown away")
 
 
 def series_of(lab, scene, size, fixed, links, known):
     """The machines of one kind, each with twice the nodes of the one before. `known`: runs, by their settings."""
-    rows, nodes = [], 1
-    voxels_text = sides_text((SIDES,) * 3) if fixed else "one a node"
-    while nodes <= MOST and (not rows or rows[-1]["supersteps"] * nodes <= MOST_LAUNCHES):
+    rows, one = [], None
+    for nodes in powers(MOST):
+        if rows and rows[-1]["supersteps"] * nodes > MOST_LAUNCHES:
+            break
         sides = near_cube(nodes)
-        voxels = (SIDES,) * 3 if fixed else sides
-        key = (scene.name, sides, voxels, links)
-        if key not in known:
-            known[key] = run_on_torus(lab, scene, size, sides, voxels, queue=QUEUE, links=links)
-        run = known[key]
-        one = rows[0]["run"] if rows else run
-        waits = ("the root's link" if run.root_link_ms >= run.overlapped_ms else
-                 ("the root" if nodes > 1 else "its one node") if run.root_processor_ms >= run.overlapped_ms else
-                 "a link" if run.links_ms >= run.overlapped_ms else "a node")
-        rows.append({"scene": scene.name, "voxels": voxels_text, "links": links, "nodes": nodes,
-                     "overlapped (ms)": run.overlapped_ms, "stepwise (ms)": run.stepwise_ms,
+        key = scene.name, sides, (SIDES,) * 3 if fixed else sides, links
+        run = known[key] = known.get(key) or run_on_torus(lab, scene, size, *key[1:3], queue=QUEUE, links=links)
+        one = one or run
+        rows.append({"scene": scene.name, "voxels": VOXELS if fixed else "one a node", "links": links, "nodes": nodes,
+                     **run.row(["overlapped (ms)", "stepwise (ms)"]),
                      "speed-up, overlapped": one.overlapped_ms / run.overlapped_ms,
                      "speed-up, stepwise": one.stepwise_ms / run.stepwise_ms,
-                     "efficiency, overlapped": one.overlapped_ms / run.overlapped_ms / nodes, "u": run.imbalance,
-                     "hops a packet": run.hops_per_packet, "supersteps": run.supersteps,
-                     "busiest link (bytes)": run.busiest_link_bytes, "tests a ray": run.tests_per_ray,
-                     "steps a ray": run.steps_per_ray, "rays thrown away": run.discarded, "waits for": waits,
-                     "run": run, "balance": run.balance})
-        nodes *= 2
+                     "efficiency, overlapped": one.overlapped_ms / run.overlapped_ms / nodes, **run.row(COLUMNS),
+                     "waits for": waits_for(nodes, run), "run": run, "balance": run.balance})
     return pd.DataFrame(rows)
+
+
+def waits_for(nodes, run):
+    if run.root_link_ms >= run.overlapped_ms:
+        return "the root's link"
+    if run.root_processor_ms >= run.overlapped_ms:
+        return "the root" if nodes > 1 else "its one node"
+    return "a link" if run.links_ms >= run.overlapped_ms else "a node"
 
 
 @study("nodes")
@@ -68,10 +69,10 @@ def nodes(lab, scenes):
         machines += [three, two, fixed]
     rows = pd.concat(machines, ignore_index=True).drop(columns=["run", "balance"])
     return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": MOST,
-                 "voxels": sides_text((SIDES,) * 3), "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings,
-                comparisons, tables=[Table("nodes", "Every machine", rows)], plots=plots_of(by_scene),
-                news=["Yoshitani & Yamazaki measured neither speed-up nor balance, and had 64 nodes: here are both, for 1 "
-                      "to 4,096 nodes, on tori of four and of six links a node."], clock=CLOCK,
+                 "voxels": VOXELS, "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings, comparisons,
+                tables=[Table("nodes", "Every machine", rows)], plots=plots_of(by_scene),
+                news=["Yoshitani & Yamazaki measured neither speed-up nor balance, and had 64 nodes: here are both, "
+                      "for 1 to 4,096 nodes, on tori of four and of six links a node."], clock=CLOCK,
                 words={"launches": MOST_LAUNCHES})
 
 
@@ -80,17 +81,17 @@ def finding_of_speedup(rows):
     half = rows["nodes"][(rows["efficiency, overlapped"] >= 0.5).cummin()].iloc[-1]
     return (f"{best['scene']}, {best['voxels']} voxels on every machine: {best['nodes']} nodes are fastest, "
             f"{best['speed-up, overlapped']:.1f} times as fast as one (overlapped; stepwise "
-            f"{best['speed-up, stepwise']:.1f} times), and what they wait for is {best['waits for']}. Half of the nodes' "
-            f"power or more is used up to {half} nodes.")
+            f"{best['speed-up, stepwise']:.1f} times), and what they wait for is {best['waits for']}. Half of the "
+            f"nodes' power or more is used up to {half} nodes.")
 
 
 def finding_of_voxels(one, fixed):
     best, first = one.loc[one["overlapped (ms)"].idxmin()], one.iloc[0]
-    return (f"{first['scene']}, one voxel a node: {best['nodes']} nodes are {best['speed-up, overlapped']:.0f} times as "
-            f"fast as one, but that one has no grid: {first['tests a ray'] / max(1e-9, best['tests a ray']):.1f} times as "
-            f"many tests a ray, {first['tests a ray']:.1f} beside {best['tests a ray']:.1f}. With one node and "
-            f"{fixed['voxels'][0]} voxels it is {first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times as fast "
-            "already.")
+    return (f"{first['scene']}, one voxel a node: {best['nodes']} nodes are {best['speed-up, overlapped']:.0f} times "
+            f"as fast as one, but that one has no grid: {first['tests a ray'] / max(1e-9, best['tests a ray']):.1f} "
+            f"times as many tests a ray, {first['tests a ray']:.1f} beside {best['tests a ray']:.1f}. With one node "
+            f"and {fixed['voxels'][0]} voxels it is {first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times "
+            "as fast already.")
 
 
 def finding_of_links(three, two):
@@ -99,9 +100,9 @@ def finding_of_links(three, two):
     a, b = three.iloc[count - 1], two.iloc[count - 1]
     bytes_ratio = b["busiest link (bytes)"] / max(1, a["busiest link (bytes)"])
     return (f"{a['scene']}, 2-D against 3-D torus with {a['nodes']} nodes: {b['hops a packet']:.2f} hops a packet for "
-            f"{a['hops a packet']:.2f}, {b['supersteps']} supersteps for {a['supersteps']}, {bytes_ratio:.2f} times the "
-            f"bytes over the busiest link; overlapped it takes {ratios.iloc[-1]:.2f} times as long, of all numbers of nodes "
-            f"{ratios.min():.2f} to {ratios.max():.2f}.")
+            f"{a['hops a packet']:.2f}, {b['supersteps']} supersteps for {a['supersteps']}, {bytes_ratio:.2f} times "
+            f"the bytes over the busiest link; overlapped it takes {ratios.iloc[-1]:.2f} times as long, of all numbers "
+            f"of nodes {ratios.min():.2f} to {ratios.max():.2f}.")
 
 
 def finding_of_balance(one, fixed):
@@ -119,21 +120,22 @@ def finding_of_making(one, fixed):
         how = "a voxel each" if most["voxels"] == "one a node" else f"{most['voxels']} voxels laid out cyclically"
         return f"{1 + kept:.1f} with {how} ({most['nodes']} nodes)"
 
-    return (f"{one['scene'][0]}: nodes that make their own primary rays make up to {text(one)} for each that is kept, up "
-            f"to {text(fixed)}; what is discarded is charged.")
+    return (f"{one['scene'][0]}: nodes that make their own primary rays make up to {text(one)} for each that is kept, "
+            f"up to {text(fixed)}; what is discarded is charged.")
 
 
 def plots_of(by_scene):
     plots, hops, balance = [], [], []
     for number, (three, two, fixed) in enumerate(by_scene, 1):
         scene, voxels = three["scene"][0], fixed["voxels"][0]
+        both = (fixed, voxels), (three, "a voxel a node")
         series = [Series(f"{label}, {bound}", rows["nodes"], rows[f"speed-up, {bound}"])
-                  for rows, label in ((fixed, voxels), (three, "a voxel a node")) for bound in ("overlapped", "stepwise")]
+                  for rows, label in both for bound in ("overlapped", "stepwise")]
         plots.append(Plot(f"nodes-speedup-{number}", f"Speed-up of {scene}, 3-D torus", "nodes", "speed-up, modelled",
                           series + [Series("as the nodes", fixed["nodes"], fixed["nodes"])], "xy"))
         hops += [Series(f"{scene}, {rows['links'][0]}", rows["nodes"], rows["hops a packet"]) for rows in (three, two)]
         balance += [Series(f"{scene}, {label}", rows["nodes"], rows["balance"])
-                    for rows, label in ((three, "a voxel a node"), (fixed, voxels))]
-    return plots + [Plot("nodes-hops", "Links that a packet takes, a voxel a node", "nodes", "hops a packet", hops, "x"),
-                    Plot("nodes-balance", "Balance of computing, 3-D torus", "nodes", "mean load / largest load", balance,
-                         "xy")]
+                    for rows, label in both[::-1]]
+    return plots + [
+        Plot("nodes-hops", "Links that a packet takes, a voxel a node", "nodes", "hops a packet", hops, "x"),
+        Plot("nodes-balance", "Balance of computing, 3-D torus", "nodes", "mean load / largest load", balance, "xy")]

@@ -2,44 +2,42 @@
 
 Are random objects slower than even ones, is it for their copies, and why does time grow less than the objects do?
 
-- 64 nodes, 4 x 4 x 4, on an 8 x 8 torus of four links a node, one voxel each; {size} x {size} pixels, primary and shadow
-  rays alone, one light, matt spheres.
+- 64 nodes, 4 x 4 x 4, on an 8 x 8 torus of four links a node, one voxel each; {size} x {size} pixels, primary and
+  shadow rays alone, one light, matt spheres.
 - Two protocols. Yoshitani & Yamazaki: the root makes all primary rays and sends them to the voxels where they enter; a
   ray packet has the {words} words that their Table 1 adds up to, the least that they can be, as data for the search and
   of the object come to them; a ray brings home one return of 6 words, from where its shadow ray ends. Raya: every node
-  makes the primary rays that enter at its voxel, and is charged for those that it makes and discards; a ray packet has 16
-  words; each term of a ray, its ambient light, a light or the background, is a return of 8.
-- The returns of a ray are moved apart, so that the image is the same bit for bit; by the protocol of Yoshitani & Yamazaki
-  they are charged as one message. What is shaded is charged where the ray hits, by either protocol.
+  makes the primary rays that enter at its voxel, and is charged for those that it makes and discards; a ray packet has
+  16 words; each term of a ray, its ambient light, a light or the background, is a return of 8.
+- The returns of a ray are moved apart, so that the image is the same bit for bit; by the protocol of Yoshitani &
+  Yamazaki they are charged as one message. What is shaded is charged where the ray hits, by either protocol.
 - Even: every voxel holds as many spheres, each within its voxel.
 - Random: the even scene's spheres, their radii, surfaces, light and view, about centres drawn from the cube and moved
   into it where they stick out; {seeds} scenes.
 - Random, none astride: the random spheres moved, each by little more than its radius, until each lies within the voxel
   of its centre. As many lie in each voxel, but no sphere is in two: what separates copies from crowds.
 - In all three the outermost spheres touch the sides of one cube, so that all have the same voxels. Registration takes
-  each for larger by up to a 16th of a voxel's side, for the rounding of rays from afar; even spheres and those moved keep
-  that far from the sides of their voxels where they have the room.
+  each for larger by up to a 16th of a voxel's side, for the rounding of rays from afar; even spheres and those moved
+  keep that far from the sides of their voxels where they have the room.
 - After +- stands the half width of a 95 % confidence interval over the random scenes, by Student's t. Random is slower
   where the whole interval of random over even lies above 1, else not slower where it lies below 1.02; the claim is
   reproduced where all numbers of objects are slower, not reproduced where none is and half of them or more are not, and
   where some are and some are not it cannot be told. Asynchronous is the machine that they describe, simulated packet by
-  packet: two tasks a node, links that carry while nodes compute, finite buffers. A claim is judged by it; overlapped and
-  stepwise, where nothing or everything waits, stand next to it.
+  packet: two tasks a node, links that carry while nodes compute, finite buffers. A claim is judged by it; overlapped
+  and stepwise, where nothing or everything waits, stand next to it.
 - How deep primary rays go is counted in a render without lights.
-- Why time grows less than the objects, from the fewest to the most of them, overlapped: objects over time is the product
-  of four ratios. Voxels that all rays enter; tests in a voxel, over the objects; the work of all nodes, over the tests;
-  the machine's time, over that work.
-- Time counts as linear where objects over time is less than 1.1. The reason that Yoshitani & Yamazaki give, rays that end
-  earlier, is the right one where fewer voxels a ray explain more than half of the product, by logarithms, for even and
-  for random objects. Both by the whole interval; where it holds the limit the claim cannot be told.
+- Why time grows less than the objects, from the fewest to the most of them, overlapped: objects over time is the
+  product of four ratios. Voxels that all rays enter; tests in a voxel, over the objects; the work of all nodes, over
+  the tests; the machine's time, over that work.
+- Time counts as linear where objects over time is less than 1.1. The reason that Yoshitani & Yamazaki give, rays that
+  end earlier, is the right one where fewer voxels a ray explain more than half of the product, by logarithms, for even
+  and for random objects. Both by the whole interval; where it holds the limit the claim cannot be told.
 """
-import math
-
 import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Claim, Page, Plot, Series, Table, estimate, papers, series_by, study, verdict
-from raya.lab.torus import CLOCK, even_scene, run_on_torus
+from raya.lab.voxels import CLOCK, even_scene, run_on_torus
 
 COUNTS, SEEDS, OTHER_WORDS = (64, 192, 256, 512, 1024, 8320), 5, (32, 48)
 EVEN, RANDOM, WITHIN = "even", "random", "random, none astride"
@@ -62,7 +60,8 @@ def scenes_of(count):
 
 
 def depth_of(lab, scene, size):
-    """Primary rays alone: the share that hits; of those in the box, the share that ends in its first voxel, and voxels."""
+    """Primary rays alone: the share that hits; of those in the box, the share that ends in its first voxel, and
+    voxels."""
     run = render(lab, scene.without_lights(), size, packets=True)
     packets = run.result.packets
     primary = packets[packets["kind"] == raya.PACKET_KINDS.index("primary")]
@@ -102,17 +101,16 @@ def objects(lab, scenes):
                 findings_of(runs, rows, ratios, growth, depths, words) + more,
                 claims=[claim_of_random(ratios), claim_of_growth(growth), claim_of_depth(growth)],
                 tables=tables_of(rows, ratios, growth, depths, words), plots=plots_of(rows, ratios, depths),
-                news=["Yoshitani & Yamazaki print no times for Fig. 4 and one scene of each kind; here are intervals over "
-                      "scenes, both protocols, copies kept apart from crowds, and the sub-linearity taken apart."],
+                news=["Yoshitani & Yamazaki print no times for Fig. 4 and one scene of each kind; here are intervals "
+                      "over scenes, both protocols, copies kept apart from crowds, and the sub-linearity taken apart."],
                 clock=CLOCK)
 
 
 def row_of(key, runs):
     count, kind, protocol = key
-    figures = {"copies": "copies", "tests a ray": "tests_per_ray", "steps a ray": "steps_per_ray", "returns": "returns",
-               "rays thrown away": "discarded", "u": "imbalance"}
+    columns = ("copies", "tests a ray", "steps a ray", "returns", "rays thrown away", "u")
     row = {"objects": count, "kind": kind, "protocol": protocol, "scenes": len(runs),
-           **{name: np.mean([getattr(run, member) for run in runs]) for name, member in figures.items()}}
+           **{column: np.mean([run.row([column])[column] for run in runs]) for column in columns}}
     for time in TIMES:
         e = estimate([getattr(run, f"{time}_ms") for run in runs])
         row[f"{time} (ms)"], row[f"{time} +- (ms)"] = e.mean, e.half
@@ -158,32 +156,27 @@ def claim_of_random(ratios):
     return Claim(papers.TP, "Fig. 4", "Random objects take longer than even ones, as those that straddle voxels are "
                  "registered more than once.",
                  verdict(slower == len(some), slower == 0 and 2 * not_slower >= len(some)),
-                 f"Random over even, without supersteps: {texts_of(some, 'asynchronous')}. Slower, by the 95 % interval, "
-                 f"for {slower} of {len(some)} numbers of objects; not slower, or by less than 2 %, for {not_slower}. Its "
-                 f"bounds: overlapped {texts_of(some, 'overlapped')}; stepwise {texts_of(some, 'stepwise')}.")
+                 f"Random over even, without supersteps: {texts_of(some, 'asynchronous')}. Slower, by the 95 % "
+                 f"interval, for {slower} of {len(some)} numbers of objects; not slower, or by less than 2 %, for "
+                 f"{not_slower}. Its bounds: overlapped {texts_of(some, 'overlapped')}; stepwise "
+                 f"{texts_of(some, 'stepwise')}.")
 
 
 def claim_of_growth(growth):
     even, random = growth[0][2], growth[1][2]
     of_even, of_random = estimate(even["objects / time"]), estimate(random["objects / time"])
-    lows, highs = ([e.mean if np.isnan(e.half) else bound(e) for e in (of_even, of_random)]
-                   for bound in (lambda e: e.low, lambda e: e.high))
     return Claim(papers.TP, "Fig. 4", "Time does not grow linearly with the objects.",
-                 verdict(min(lows) > LINEAR, min(highs) <= LINEAR),
+                 verdict(min(of_even.least, of_random.least) > LINEAR, min(of_even.most, of_random.most) <= LINEAR),
                  f"{even['objects'][0]:.0f} times the objects take {even['time'][0]:.2f} times the time, even; "
                  f"{estimate(random['time']).text(2)} times, random.")
 
 
 def claim_of_depth(growth):
     """The paper's reason is the right one where it explains more than half, of logarithms, in both kinds."""
-    shares = []
-    for _, _, rows in growth[:2]:
-        shares.append(estimate(np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"])))
-    lows, highs = ([e.mean if np.isnan(e.half) else bound(e) for e in shares]
-                   for bound in (lambda e: e.low, lambda e: e.high))
-    (_, _, even), (_, _, random) = growth[:2]
+    even, random = growth[0][2], growth[1][2]
+    shares = [estimate(np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"])) for rows in (even, random)]
     return Claim(papers.TP, "Fig. 4", "That is since the share of rays that end in the front voxels differs.",
-                 verdict(min(lows) > 0.5, min(highs) <= 0.5),
+                 verdict(min(e.least for e in shares) > 0.5, min(e.most for e in shares) <= 0.5),
                  f"Rays end earlier: fewer voxels a ray explain a factor of {even['fewer voxels a ray'].mean():.2f} of "
                  f"{even['objects / time'].mean():.2f} even, {random['fewer voxels a ray'].mean():.2f} of "
                  f"{random['objects / time'].mean():.2f} random; that is {100 * shares[0].mean:.0f} % and "
@@ -193,25 +186,26 @@ def claim_of_depth(growth):
 def findings_of(runs, rows, ratios, growth, depths, words):
     random = of(rows, RANDOM, OWN)
     first, last = random.iloc[0], random.iloc[-1]
-    copies = (f"Is it the copies? Random objects are registered {1 + first['copies'] / first['objects']:.2f} times each "
-              f"where there are {first['objects']} and {1 + last['copies'] / last['objects']:.2f} times where there are "
-              f"{last['objects']}. Moved until none lies astride, they take "
-              f"{texts_of(of(ratios, WITHIN, OWN), 'overlapped')} times as long as even ones where all nodes make primary "
-              "rays: what remains is that voxels hold unequal numbers.")
+    copies = (f"Is it the copies? Random objects are registered {1 + first['copies'] / first['objects']:.2f} times "
+              f"each where there are {first['objects']} and {1 + last['copies'] / last['objects']:.2f} times where "
+              f"there are {last['objects']}. Moved until none lies astride, they take "
+              f"{texts_of(of(ratios, WITHIN, OWN), 'overlapped')} times as long as even ones where all nodes make "
+              "primary rays: what remains is that voxels hold unequal numbers.")
     a, b = (depths[depths["kind"] == EVEN].iloc[i] for i in (0, -1))
-    va, vb, end = a["voxels a ray in the box"], b["voxels a ray in the box"], "end in the first voxel (% of those in the box)"
+    (va, vb), end = (one["voxels a ray in the box"] for one in (a, b)), "end in the first voxel (% of those in the box)"
     theirs, ours = runs[COUNTS[0], EVEN, PAPER][0], runs[COUNTS[0], EVEN, OWN][0]
     even = of(rows, EVEN, PAPER).set_index("objects")
-    more = ", ".join(f"{w['words a ray']:.0f} words take {w['overlapped (ms)'] / even['overlapped (ms)'][w['objects']]:.2f} "
-                     f"times as long ({w['objects']:.0f} objects)" for _, w in words.iterrows())
+    longer = words["overlapped (ms)"].values / even["overlapped (ms)"][words["objects"]].values
+    more = ", ".join(f"{w['words a ray']:.0f} words take {times:.2f} times as long ({w['objects']:.0f} objects)"
+                     for times, (_, w) in zip(longer, words.iterrows()))
     return [finding_of_random(ratios, PAPER), finding_of_root(rows, PAPER), finding_of_random(ratios, OWN),
             finding_of_root(rows, OWN), copies, *(finding_of_growth(*one) for one in growth),
-            f"A primary ray in the box goes through {va:.2f} voxels where there are {a['objects']} even objects and through "
-            f"{vb:.2f} where there are {b['objects']}, {va / vb:.2f} times fewer; {a[end]:.0f} % and {b[end]:.0f} % end in "
-            "the first one.",
-            f"{theirs.events['primary']} primary rays bring home {theirs.returns} returns by the protocol of {PAPER} and "
-            f"{ours.returns} where each term is one; there, all nodes together make {ours.discarded} primary rays that they "
-            f"discard ({COUNTS[0]} even objects).",
+            f"A primary ray in the box goes through {va:.2f} voxels where there are {a['objects']} even objects and "
+            f"through {vb:.2f} where there are {b['objects']}, {va / vb:.2f} times fewer; {a[end]:.0f} % and "
+            f"{b[end]:.0f} % end in the first one.",
+            f"{theirs.events['primary']} primary rays bring home {theirs.returns} returns by the protocol of {PAPER} "
+            f"and {ours.returns} where each term is one; there, all nodes together make {ours.discarded} primary rays "
+            f"that they discard ({COUNTS[0]} even objects).",
             f"Larger ray packets than the {papers.RAY_WORDS} words of Table 1, overlapped: {more}."]
 
 
@@ -227,19 +221,19 @@ def finding_of_root(rows, protocol):
     if not len(bound):
         return f"Protocol of {protocol}: in no even scene does the machine wait for the root."
     ms = bound["the root alone (ms)"]
-    return (f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the machine waits for the "
-            f"root, {ms.min():.0f} to {ms.max():.0f} ms; there the time is that of making rays and taking in returns, not of "
-            "the objects.")
+    return (f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the machine waits for "
+            f"the root, {ms.min():.0f} to {ms.max():.0f} ms; there the time is that of making rays and taking in "
+            "returns, not of the objects.")
 
 
 def finding_of_growth(kind, protocol, rows):
     mean = rows.mean()
     return (f"Protocol of {protocol}, {kind}: {mean['objects']:.0f} times the objects take "
-            f"{estimate(rows['time']).text(2)} times the time, {estimate(rows['objects / time']).text(2)} times less than "
-            f"in proportion. As a product: {mean['fewer voxels a ray']:.2f} as rays go through fewer voxels, "
-            f"{mean['tests a voxel grow less']:.2f} as a voxel's tests grow less than the objects, {mean['fixed costs']:.2f} "
-            f"for what does not depend on objects, {mean['one node' + chr(39) + 's bound']:.2f} for what one node or link "
-            "holds up.")
+            f"{estimate(rows['time']).text(2)} times the time, {estimate(rows['objects / time']).text(2)} times less "
+            f"than in proportion. As a product: {mean['fewer voxels a ray']:.2f} as rays go through fewer voxels, "
+            f"{mean['tests a voxel grow less']:.2f} as a voxel's tests grow less than the objects, "
+            f"{mean['fixed costs']:.2f} for what does not depend on objects, "
+            f"{mean['one node' + chr(39) + 's bound']:.2f} for what one node or link holds up.")
 
 
 def tables_of(rows, ratios, growth, depths, words):
@@ -264,7 +258,7 @@ def plots_of(rows, ratios, depths):
         column = f"{time} (ms)"
         even = of(rows, EVEN, protocol)
         series = [Series(kind, some["objects"], some[column], half_widths=some[f"{time} +- (ms)"])
-                  for kind, some in ((kind, of(rows, kind, protocol)) for kind in (EVEN, RANDOM, WITHIN))]
+                  for kind in (EVEN, RANDOM, WITHIN) for some in [of(rows, kind, protocol)]]
         linear = Series("as the objects, from the even scene's first", even["objects"],
                         even[column][0] * even["objects"] / even["objects"][0])
         return Plot(name, title, "objects", "modelled ms", series + [linear], "xy")
@@ -272,7 +266,7 @@ def plots_of(rows, ratios, depths):
     title = "Time by the protocol of Yoshitani & Yamazaki"
     ratio = [Series(f"{kind}, protocol: {protocol}", some["objects"], [e.mean for e in some["asynchronous"]],
                     half_widths=[e.half for e in some["asynchronous"]])
-             for protocol in PROTOCOLS for kind, some in ((kind, of(ratios, kind, protocol)) for kind in (RANDOM, WITHIN))]
+             for protocol in PROTOCOLS for kind in (RANDOM, WITHIN) for some in [of(ratios, kind, protocol)]]
     return [times("objects-async", f"{title}, without supersteps", PAPER, "asynchronous"),
             times("objects", f"{title}, overlapped", PAPER, "overlapped"),
             times("objects-stepwise", f"{title}, stepwise", PAPER, "stepwise"),

@@ -16,7 +16,7 @@ import pandas as pd
 import raya
 from raya.lab import Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, papers, study, verdict
 from raya.lab.laboratory import VIEWS
-from raya.lab.lattice import shares_blocks, shortest_square
+from raya.lab.mappings import shares_blocks, shortest_square
 from raya.lab.studies.images import paper_like_scenes
 from scipy.stats import rankdata, spearmanr
 
@@ -89,9 +89,9 @@ def claim_of_enough(u, means, n):
     return Claim(papers.SPA, "section on the cyclic mapping",
                  "Offsets beyond n = sqrt(P) only turn the direction of the bias, so 0..n is enough.",
                  verdict(all(g.low >= -NOTHING for g in gains), any(g.high < -NOTHING for g in gains)),
-                 f"Over {len(u)} pictures the best of 0..n is p = {near}, mean u {means[near].text()}; the best beyond is "
-                 f"p = {best}, {means[best].text()}. Of {len(beyond)} offsets beyond n {better} are better than the best "
-                 f"of 0..n with certainty; a gain of {NOTHING} or less is called nothing.")
+                 f"Over {len(u)} pictures the best of 0..n is p = {near}, mean u {means[near].text()}; the best beyond "
+                 f"is p = {best}, {means[best].text()}. Of {len(beyond)} offsets beyond n {better} are better than the "
+                 f"best of 0..n with certainty; a gain of {NOTHING} or less is called nothing.")
 
 
 def findings_of(rows, u, n, longer, as_long, correlations, squares):
@@ -100,8 +100,8 @@ def findings_of(rows, u, n, longer, as_long, correlations, squares):
     def group(offsets, vector):
         if not offsets:
             return f"none has a vector {vector}"
-        return (f"{len(offsets)} have a vector {vector}, of which {(mean[offsets] < mean[n]).sum()} have a lower mean u "
-                f"than p = {n}, their mean {mean[offsets].mean():.4f}")
+        return (f"{len(offsets)} have a vector {vector}, of which {(mean[offsets] < mean[n]).sum()} have a lower mean "
+                f"u than p = {n}, their mean {mean[offsets].mean():.4f}")
 
     both, verdict_text = longer + as_long, "So nothing can be gained beyond sqrt(P)."
     if both:
@@ -126,9 +126,9 @@ def findings_of(rows, u, n, longer, as_long, correlations, squares):
             f"{rows['mean rank'][n]:.1f}.",
             f"Of the {len(rest)} offsets from {n + 1} to {size - n - 1} with a shorter vector, "
             f"{(mean[rest] > mean[n]).sum()} are worse than p = {n}.",
-            f"Rank correlation of u with the shortest vector over all offsets: {low:.2f} to {high:.2f}; {how} (\"tells\": "
-            f"{CORRELATED} or below). Over the offsets with a vector of {half:.1f} pixels or more it is {of_some:.2f} in "
-            "the mean."]
+            f"Rank correlation of u with the shortest vector over all offsets: {low:.2f} to {high:.2f}; {how} "
+            f"(\"tells\": {CORRELATED} or below). Over the offsets with a vector of {half:.1f} pixels or more it is "
+            f"{of_some:.2f} in the mean."]
 
 
 def comparisons_of(rows, n, longer, as_long, correlations):

@@ -70,8 +70,8 @@ def scale(lab, scenes):
                  Table("scale", "Efficiency for each number of PEs", rows),
                  Table("scale-views", "Efficiency for each number of PEs, mean of the pictures", means, on_page=False)],
                 plots_of(rows, means, len(of_views)),
-                ["Kohata & Ito end at a PE for each column. Here arrays go on to a PE for each pixel, next to the bound "
-                 "that no distribution of whole pixels passes."],
+                ["Kohata & Ito end at a PE for each column. Here arrays go on to a PE for each pixel, next to the "
+                 "bound that no distribution of whole pixels passes."],
                 words={"fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * CLOSE:.0f}"},
                 beside=papers.SPA)
 
@@ -94,8 +94,8 @@ def means_of(of_views):
 
 def finding_of_half(halves):
     texts = [f"{name}: {pes or 'none'}" for name, pes, _ in halves[1:1 + len(PLAIN)].itertuples(index=False)]
-    return (f"PEs up to which half of the array's power or more is used: {'; '.join(texts)}; whole pixels, however given "
-            f"out: {halves.iloc[0, 1]}.")
+    return (f"PEs up to which half of the array's power or more is used: {'; '.join(texts)}; whole pixels, however "
+            f"given out: {halves.iloc[0, 1]}.")
 
 
 def finding_of_2d(between):
@@ -109,12 +109,13 @@ def finding_of_2d(between):
     else:
         need = f"So it does not always take 2-D: {best} does for P = {', '.join(map(str, kept[best]))}."
     counts = "; ".join(f"{name}: {len(pes)}" for name, pes in kept.items())
-    return (f"More PEs than pixels a side, where Kohata & Ito ask for 2-D \"or the like\": of {len(between)} such arrays "
-            f"2-D is kept up with on ({counts}). {need}")
+    return (f"More PEs than pixels a side, where Kohata & Ito ask for 2-D \"or the like\": of {len(between)} such "
+            f"arrays 2-D is kept up with on ({counts}). {need}")
 
 
 def finding_of_resonance(between, side):
-    """With s = P / W rows from one row of a PE to its next, p shifts these by s p columns: not at all for multiples of W."""
+    """With s = P / W rows from one row of a PE to its next, p shifts these by s p columns: not at all for multiples of
+    W."""
     words = []
     for name in (FIXED, ROOT, LIKE):
         lost = [p for p in between["P"] if p % side == 0 and p // side * (OFFSETS[name](side, p) % side) % side == 0]
@@ -122,12 +123,13 @@ def finding_of_resonance(between, side):
             words.append(f"{name} for P = {', '.join(map(str, lost))}")
     if not words:
         return "No offset here falls back to the column split where PEs share the rows of a slot."
-    return ("Where PEs share the rows of a slot, an offset can cancel out: P / W rows further on the shift is a multiple "
-            f"of W, and the load is the column split's. So it is with {'; '.join(words)}.")
+    return ("Where PEs share the rows of a slot, an offset can cancel out: P / W rows further on the shift is a "
+            f"multiple of W, and the load is the column split's. So it is with {'; '.join(words)}.")
 
 
 def claim_of_2d(between, of_views):
-    """2-D is needed where no cyclic mapping keeps up on any array of more PEs than columns; not where one does on all."""
+    """2-D is needed where no cyclic mapping keeps up on any array of more PEs than columns; not where one does on
+    all."""
     over = {name: [estimate([v[name][i] / v[GRID][i] for v in of_views]) for i in between.index]
             for name in (FIXED, ROOT, LIKE)}
     none = all(e.high < CLOSE for estimates in over.values() for e in estimates)
@@ -137,8 +139,8 @@ def claim_of_2d(between, of_views):
     return Claim(papers.SPA, "conclusions", "More PEs than pixels a side need 2-D or the like.",
                  verdict(none, lows[best] >= CLOSE),
                  f"Over {len(of_views)} pictures, on {len(between)} arrays of more PEs than columns, the best of the "
-                 f"cyclic mappings is {best}, its rows shared: at worst {over[best][worst].text(2)} of the 2-D mapping's "
-                 f"efficiency, on {between.iloc[worst]} PEs; it keeps up with {CLOSE} or more.")
+                 f"cyclic mappings is {best}, its rows shared: at worst {over[best][worst].text(2)} of the 2-D "
+                 f"mapping's efficiency, on {between.iloc[worst]} PEs; it keeps up with {CLOSE} or more.")
 
 
 def comparisons_of(rows, side, most):

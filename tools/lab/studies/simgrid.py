@@ -6,24 +6,24 @@ Does another simulator take as long for the same history on the same machine?
   {nodes} nodes, primary rays made by the root or by all nodes, ray packets of 22 words, one return a ray). It holds for
   any order in time, so two simulators can carry it out.
 - raya: discrete events of its own (`host/torus/async_machine.hpp`). SimGrid 3.32: hosts, links, actors and messages of
-  its S4U interface (`tools/simgrid/replay.cpp`); it shares processors and links by its own solver. The rules are common:
-  a main task and a communication task that goes first, one message at a time over each way of a link, ports with room for
-  {buffer} messages of a class, two of them free before a ray enters a ring.
-- The platform has explicit links and routes between neighbours, two links to a hop: the way, and the wire that both ways
-  share. SimGrid's own torus lets a message hold all links of its way at once; transputers store it in every node.
+  its S4U interface (`tools/simgrid/replay.cpp`); it shares processors and links by its own solver. The rules are
+  common: a main task and a communication task that goes first, one message at a time over each way of a link, ports
+  with room for {buffer} messages of a class, two of them free before a ray enters a ring.
+- The platform has explicit links and routes between neighbours, two links to a hop: the way, and the wire that both
+  ways share. SimGrid's own torus lets a message hold all links of its way at once; transputers store it in every node.
 - Effects are switched on one after another, each machine having all that the one before has: computing alone, in which
-  messages take no time; the processors' part of messages; links of 1.7 MB/s each way; both ways sharing 2.4 MB/s; finite
-  buffers.
+  messages take no time; the processors' part of messages; links of 1.7 MB/s each way; both ways sharing 2.4 MB/s;
+  finite buffers.
 - Effects on the plot are numbered from 0 in that order.
 """
 import os
-import subprocess
 import tempfile
 
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, study
-from raya.lab.torus import even_scene, run_on_torus
+from raya.lab.programs import beside_raya, output_of
+from raya.lab.voxels import even_scene, run_on_torus
 
 GOAL, BUFFER = 10, 4  # %, how near the two are to be; messages of a class in a port
 ROOMY = {"buffer": 1 << 20}  # no message ever waits for room
@@ -34,14 +34,10 @@ EFFECTS = {"computing alone": {"message_cycles": 0, "word_cycles": 0, **NO_LINKS
            "+ both ways share a link": ROOMY, "+ finite buffers": {}}
 
 
-def program():
-    return os.path.join(os.path.dirname(raya.program()), "simgrid_replay")
-
-
 def lacks():
-    return "" if os.access(program(), os.X_OK) else (
-        "SimGrid is not there: no program simgrid_replay lies beside raya. `tools/setup --studies` installs it (Debian: "
-        "libsimgrid-dev), then build again.")
+    return "" if beside_raya("simgrid_replay") else (
+        "SimGrid is not there: no program simgrid_replay lies beside raya. `tools/setup --studies` installs it "
+        "(Debian: libsimgrid-dev), then build again.")
 
 
 def ask_simgrid(result, changes):
@@ -49,12 +45,12 @@ def ask_simgrid(result, changes):
     with tempfile.TemporaryDirectory(prefix="raya-simgrid-") as folder:
         platform, replay = os.path.join(folder, "platform.xml"), os.path.join(folder, "replay.txt")
         messages = result.write_replay(platform, replay, **changes)
-        run = subprocess.run([program(), platform, replay, "--log=root.thres:error"], capture_output=True, text=True)
-    words = run.stdout.split()
-    if run.returncode or words[0::2] != ["finish_ms", "delivered"]:
-        raise ValueError(f"simgrid_replay: {(run.stderr.strip().splitlines() or ['it does not print its time'])[-1]}")
+        words = output_of([beside_raya("simgrid_replay"), platform, replay, "--log=root.thres:error"],
+                          "simgrid_replay").split()
+    if words[0::2] != ["finish_ms", "delivered"]:
+        raise raya.InputError("simgrid_replay: does not print its time")
     if int(words[3]) != messages:
-        raise ValueError(f"simgrid_replay: {words[3]} of {messages} messages delivered")
+        raise raya.InputError(f"simgrid_replay: {words[3]} of {messages} messages delivered")
     return messages, float(words[1])
 
 
@@ -95,7 +91,8 @@ def simgrid(lab, scenes):
                  for _, row in whole.iterrows()],
                 tables=[Table("simgrid", "Time of one history, by raya and by SimGrid",
                               rows.drop(columns=["overlapped", "stepwise"]))],
-                plots=[Plot("simgrid", "Time of the machine, one effect after another", "effects", "modelled ms", series)],
+                plots=[Plot("simgrid", "Time of the machine, one effect after "
+                                       "another", "effects", "modelled ms", series)],
                 news=["The asynchronous torus is compared with a simulator that others wrote; neither paper has been."],
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
 
@@ -104,10 +101,10 @@ def finding_of_goal(rows):
     worst = rows.loc[rows["difference (%)"].abs().idxmax()]
     most, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
     if most <= GOAL:
-        return (f"On all {len(rows)} machines the two times lie within {GOAL} % of one another; the most that they differ "
-                f"is {most:.2g} % ({where}).")
-    return (f"The two times are not within {GOAL} % of one another on all {len(rows)} machines: they differ by {most:.2f} % "
-            f"on {where}.")
+        return (f"On all {len(rows)} machines the two times lie within {GOAL} % of one another; the most that they "
+                f"differ is {most:.2g} % ({where}).")
+    return (f"The two times are not within {GOAL} % of one another on all {len(rows)} machines: they differ by "
+            f"{most:.2f} % on {where}.")
 
 
 def finding_of_effects(rows):
@@ -115,6 +112,6 @@ def finding_of_effects(rows):
     more = rows[rows["machine"].str.startswith("+")]
     ours, theirs = more["raya, the effect (ms)"], more["SimGrid, the effect (ms)"]
     i = ours.idxmax()
-    return (f"Of the effects next to computing the largest is that {more['machine'][i][2:]} ({more['torus'][i]}, inject "
-            f"{more['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. In no effect are the "
-            f"two more than {(ours - theirs).abs().max():.3f} ms apart.")
+    return (f"Of the effects next to computing the largest is that {more['machine'][i][2:]} ({more['torus'][i]}, "
+            f"inject {more['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. In no "
+            f"effect are the two more than {(ours - theirs).abs().max():.3f} ms apart.")

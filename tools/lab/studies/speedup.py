@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, each_of, estimate, one_of, papers,
-                      prediction_text, study, verdict, verdict_among)
+                      prediction_text, study, verdict, verdict_among, with_paper)
 
 OFFSET = 16  # the paper's for 256 PEs
 COLUMNS = {"p = 0": lambda pes: [0], "p = 16": lambda pes: [OFFSET], "p = round(sqrt(P))": lambda pes: np.rint(
@@ -58,7 +58,7 @@ def fig9(lab, scenes):
     for name in COLUMNS:
         estimates = [estimate(one) for one in np.array([v[f"{name}, cyclic fold"] for v, _ in views]).T]
         means[name], means[f"{name}, +-"] = [e.mean for e in estimates], [e.half for e in estimates]
-    in_paper = bool(papers.printed(True, scene.name, size))
+    in_paper = papers.is_papers(scene.name, size)
     more = len(grids) // 2 * 2
     ratios = [g[more] / g[more // 2] for _, g in views]
     fewer = [g[more // 2] for _, g in views]
@@ -66,7 +66,7 @@ def fig9(lab, scenes):
     page = Page({"scene": scene.name, "size": size, "pes": size, "offset": OFFSET % size, "views": len(views),
                  "view_seeds": f"1..{len(views)}"},
                 findings_of(rows, grids, sides, in_paper),
-                comparisons_of(rows, grids, means.iloc[-1], ratios, fewer, more, in_paper),
+                with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], ratios, fewer, more)),
                 claims_of(views) if in_paper else [], tables_of(rows, grids, means, sides),
                 plots_of(rows, grids, means, in_paper),
                 ["Kohata & Ito drew one picture. Here stand every number of PEs, two ways to fold, and many views with "
@@ -97,27 +97,23 @@ def tables_of(rows, grids, means, sides):
             Table("fig9-sizes", "One PE to one for each column, cyclic fold, one picture of each size", sides)]
 
 
-def comparisons_of(rows, grids, mean, ratios, fewer, more, in_paper):
+def comparisons_of(rows, grids, mean, ratios, fewer, more):
     last, half, pes = rows.iloc[-1], more // 2, f"speed-up on {len(rows)} PEs, "
-
-    def paper(value):
-        return value if in_paper else None
-
     ratio, few = estimate(ratios), estimate(fewer)
-    return [Comparison(pes + "p = 16", "", paper(papers.SPEEDUP_16), last["p = 16, cyclic fold"],
+    return [Comparison(pes + "p = 16", "", papers.SPEEDUP_16, last["p = 16, cyclic fold"],
                        "the paper's stands in its abstracts"),
-            Comparison(pes + "p = 16, mean of views", "", paper(papers.SPEEDUP_16), mean["p = 16"],
+            Comparison(pes + "p = 16, mean of views", "", papers.SPEEDUP_16, mean["p = 16"],
                        half_width=mean["p = 16, +-"]),
-            Comparison(pes + "p = 0", "", paper(papers.SPEEDUP_0), last["p = 0, cyclic fold"],
+            Comparison(pes + "p = 0", "", papers.SPEEDUP_0, last["p = 0, cyclic fold"],
                        "centre at 256 x 256 is calibrated on its u(0)", derived=True),
-            Comparison(pes + "p = 0, mean of views", "", paper(papers.SPEEDUP_0), mean["p = 0"], derived=True,
+            Comparison(pes + "p = 0, mean of views", "", papers.SPEEDUP_0, mean["p = 0"], derived=True,
                        half_width=mean["p = 0, +-"]),
-            Comparison(f"CAP's mapping, {more} x {more} PEs over {half} x {half}", "", paper(papers.CAP_RATIO),
+            Comparison(f"CAP's mapping, {more} x {more} PEs over {half} x {half}", "", papers.CAP_RATIO,
                        grids[more] / grids[half], "the paper's from the makers of CAP, who had another scene"),
-            Comparison("... mean of views", "", paper(papers.CAP_RATIO), ratio.mean, half_width=ratio.half),
-            Comparison(f"Pixel Machine's mapping, {half} x {half} PEs", "", paper(papers.PIXEL_MACHINE_SPEEDUP),
+            Comparison("... mean of views", "", papers.CAP_RATIO, ratio.mean, half_width=ratio.half),
+            Comparison(f"Pixel Machine's mapping, {half} x {half} PEs", "", papers.PIXEL_MACHINE_SPEEDUP,
                        grids[half], "the paper: 60 or more, from the makers, who had another scene"),
-            Comparison("... mean of views ", "", paper(papers.PIXEL_MACHINE_SPEEDUP), few.mean,
+            Comparison("... mean of views ", "", papers.PIXEL_MACHINE_SPEEDUP, few.mean,
                        half_width=few.half)]
 
 
@@ -142,12 +138,13 @@ def claims_of(views):
                   verdict_among(papers.SPEEDUP_0, last_0), why(last_0, "Ours is")),
             Claim(papers.SPA, "Fig. 9", "With p = 16 the speed-up is above that with p = 0.",
                   verdict(all(g.low > 0 for g in gains), any(g.high <= 0 for g in gains)),
-                  f"In the same view p = 16 gains over p = 0, all intervals together with 95 %: {gain_texts}. On 16 PEs "
-                  "and fewer, powers of two, both are the same mapping."),
+                  f"In the same view p = 16 gains over p = 0, all intervals together with 95 %: {gain_texts}. On 16 "
+                  "PEs and fewer, powers of two, both are the same mapping."),
             Claim(papers.SPA, "beside Fig. 9", "256 PEs of CAP are 3.86 times faster than 64, by its makers.",
                   verdict_among(papers.CAP_RATIO, ratios), why(ratios, "CAP's mapping on our scene gives")),
             Claim(papers.SPA, "beside Fig. 9", "64 nodes of the Pixel Machine are 60 times faster than one or more, by "
-                  "its makers.", verdict(few.low >= papers.PIXEL_MACHINE_SPEEDUP, few.high < papers.PIXEL_MACHINE_SPEEDUP),
+                  "its "
+                  "makers.", verdict(few.low >= papers.PIXEL_MACHINE_SPEEDUP, few.high < papers.PIXEL_MACHINE_SPEEDUP),
                   why(grids, "The Pixel Machine's mapping on our scene gives"))]
 
 

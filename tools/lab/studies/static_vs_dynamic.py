@@ -85,7 +85,8 @@ def best_of(rows, kind):
 
 
 def counts_of(scenes):
-    """Of the cases, scene and P: in how many no static one is near the bound, a hybrid is, a hybrid beats all static."""
+    """Of the cases, scene and P: in how many no static one is near the bound, a hybrid is, a hybrid beats all
+    static."""
     fixed, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
     return {"cases": len(fixed), "no static one near the bound": (fixed["makespan / lower bound"] > NEAR).sum(),
             "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR).sum(),
@@ -158,17 +159,17 @@ def claims_of(factors):
 def findings_of(scenes, counts, overhead, size):
     inadequate, cases = counts["no static one near the bound"], counts["cases"]
     how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
-    findings = [f"That static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} of "
-                f"{cases} cases (scene and P) no static one ends within 10 % of the lower bound. Static plus dynamic, "
-                f"requests paid for, does in {counts['hybrid near the bound']} of them and beats every static strategy in "
-                f"{counts['hybrid beats all static ones']}."]
+    findings = [f"That static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
+                f"of {cases} cases (scene and P) no static one ends within 10 % of the lower bound. Static plus "
+                f"dynamic, requests paid for, does in {counts['hybrid near the bound']} of them and beats every static "
+                f"strategy in {counts['hybrid beats all static ones']}."]
     for rows in scenes:
         findings += [static_finding(rows), hybrid_finding(rows)]
     collapse = collapse_finding(scenes[0], size)
     queues = "; ".join(f"{rows['scene'][0]} ({queue_of(rows, overhead)})" for rows in scenes)
     return findings + ([collapse] if collapse else []) + [
-        f"A request takes {overhead} budget cycles ({FACTOR * spa_ms(overhead):.2f} ms). If the root answered them one at "
-        f"a time, as one bus would make it, they alone would take longer than the run that is shown: {queues}."]
+        f"A request takes {overhead} budget cycles ({FACTOR * spa_ms(overhead):.2f} ms). If the root answered them one "
+        f"at a time, as one bus would make it, they alone would take longer than the run that is shown: {queues}."]
 
 
 def static_finding(rows):
@@ -181,11 +182,11 @@ def static_finding(rows):
     def of(name):
         return rows[rows["strategy"] == name]
 
-    return (f"{rows['scene'][0]}, static: at P = {first['P']} {first['strategy']} is best, {100 * first['efficiency']:.0f} "
-            f"% efficient, at P = {last['P']} {last['strategy']}, {100 * last['efficiency']:.0f} % (of "
-            f"{100 * last['bound']:.0f} % possible). The best of them falls under 90 % {from_text(first_below(best, 0.9))} "
-            f"and under 50 % {from_text(first_below(best, 0.5))}; the column split {limits(of('column split'))}, cyclic "
-            f"with p = sqrt(P) {limits(of(ROOT))}.")
+    return (f"{rows['scene'][0]}, static: at P = {first['P']} {first['strategy']} is best, "
+            f"{100 * first['efficiency']:.0f} % efficient, at P = {last['P']} {last['strategy']}, "
+            f"{100 * last['efficiency']:.0f} % (of {100 * last['bound']:.0f} % possible). The best of them falls under "
+            f"90 % {from_text(first_below(best, 0.9))} and under 50 % {from_text(first_below(best, 0.5))}; the column "
+            f"split {limits(of('column split'))}, cyclic with p = sqrt(P) {limits(of(ROOT))}.")
 
 
 def hybrid_finding(rows):
@@ -195,8 +196,8 @@ def hybrid_finding(rows):
     near, sizes = int((paid <= NEAR).cummin().sum()), sorted(rows["P"].unique())
     up_to = (f"at P = {sizes[0]}" if near == 0 else "for every P" if near == len(sizes) else
              f"up to P = {sizes[near - 1]}")
-    return (f"{rows['scene'][0]}, static plus dynamic: {'' if near else 'not '}within 10 % of the lower bound {up_to}; at "
-            f"worst the best of them ends {max(1, paid.max()):.2f} times the lower bound with requests paid for, "
+    return (f"{rows['scene'][0]}, static plus dynamic: {'' if near else 'not '}within 10 % of the lower bound {up_to}; "
+            f"at worst the best of them ends {max(1, paid.max()):.2f} times the lower bound with requests paid for, "
             f"{max(1, free.max()):.2f} times with free ones.")
 
 
@@ -209,7 +210,8 @@ def queue_of(rows, overhead):
 
 
 def collapse_finding(rows, size):
-    """Where the cyclic mapping falls back to single columns: p and the turns in which P / W PEs share a slot's rows meet."""
+    """Where the cyclic mapping falls back to single columns: p and the turns in which P / W PEs share a slot's rows
+    meet."""
     texts = []
     for name in ("cyclic, p = 16", ROOT):
         for pes in sorted(rows["P"].unique()):
@@ -228,7 +230,8 @@ def collapse_finding(rows, size):
 
 def plots_of(rows, percent, number):
     kinds = rows.drop_duplicates("strategy").set_index("strategy")
-    for label, names in (("static", kinds.index[kinds["kind"] == "static"]), ("dynamic", kinds.index[kinds["pays"]])):
-        what = "static mappings" if label == "static" else "dynamic and hybrid distribution"
+    for label, what, names in (("static", "static mappings", kinds.index[kinds["kind"] == "static"]),
+                               ("dynamic", "dynamic and hybrid distribution", kinds.index[kinds["pays"]])):
         yield Plot(f"{NAME}-{number}-{label}", f"{rows['scene'][0]}: {what}", "PEs", "efficiency (%)",
-                   [Series(name, percent.columns, percent.loc[name]) for name in [*names, "most that is possible"]], "x")
+                   [Series(name, percent.columns, percent.loc[name]) for name in [*names, "most that is possible"]],
+                   "x")

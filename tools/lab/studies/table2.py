@@ -17,7 +17,7 @@ import time
 
 import pandas as pd
 import raya
-from raya.lab import Claim, Comparison, Page, Picture, Table, measured, one_of, papers, study, verdict
+from raya.lab import Claim, Comparison, Page, Picture, Table, measured, one_of, papers, study, verdict, with_paper
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, host_call_ms, host_model, run_on_spa
 
@@ -57,7 +57,7 @@ def table2(lab, scenes):
             f"{device}, fp32": device_seconds(lab, scene, size, "fp32"),
             f"{device}, {SPA['format']}": device_seconds(lab, scene, size, SPA["format"])}
     reference, fp32, spa22 = here.values()
-    in_paper = bool(papers.printed(True, scene.name, size))
+    in_paper = papers.is_papers(scene.name, size)
     speedup = array.phase("trace")["speedup"]
     balance = job_gain(papers.ONE_PE_COMPUTE_MS, papers.ONE_PE_COMPUTE_MS / speedup)
     factors = pd.DataFrame({"factor": FACTORS, "1 PE: compute (ms)": [one.time(f)["compute"] for f in FACTORS],
@@ -67,14 +67,15 @@ def table2(lab, scenes):
     return Page({"scene": scene.name, "size": size, "pes": [size, 1], "offset": 16 % size,
                  "format": format_for(scene), "factor": FACTOR, "device": device},
                 findings_of(size, speedup, array, one, factors, host, reference, fp32, spa22),
-                comparisons_of(size, array.time(), one.time(), speedup, balance, 1e3 * reference.least, in_paper),
+                with_paper(in_paper, comparisons_of(size, array.time(), one.time(), speedup, balance,
+                                                    1e3 * reference.least)),
                 [claim_of_job(balance)] if in_paper else [],
                 [Table("table2", "Times", rows_of(size, array, one, here, in_paper)),
                  Table("table2-factors", "The job by the clock's factor", factors),
                  Table("table2-host", "What a call of the host takes, by the rounding of the printed 2, 12 and 140 ms",
                        host)],
-                news=["The whole job's gain by the balance alone, what the clock's uncertainty makes of it, and a model "
-                      "of the host with the ranges that rounding leaves."],
+                news=["The whole job's gain by the balance alone, what the clock's uncertainty makes of it, and a "
+                      "model of the host with the ranges that rounding leaves."],
                 pictures=[Picture("table2-picture", f"{scene.name} at {size} x {size}, as the PEs made it",
                                   "glass and mirror spheres crowded in the middle above a checkered plane"
                                   if scene.name == "centre" else "the scene that was named",
@@ -87,8 +88,8 @@ def claim_of_job(balance):
     near = abs(balance / printed - 1) <= NEAR
     return Claim(papers.SPA, "Table 2", "The whole job, display included, is 42.5 times faster on 256 PEs than on one "
                  "(derived).", verdict(near, not near),
-                 f"With the printed 64,800 ms of one PE our balance gives {balance:.1f} times, where the printed totals "
-                 f"give {printed:.1f}; as near is called {100 * NEAR:.0f} %. Display is "
+                 f"With the printed 64,800 ms of one PE our balance gives {balance:.1f} times, where the printed "
+                 f"totals give {printed:.1f}; as near is called {100 * NEAR:.0f} %. Display is "
                  f"{100 * papers.DISPLAY_MS / papers.TOTAL_MS:.0f} % of the job.")
 
 
@@ -120,29 +121,26 @@ def rows_of(size, array, one, here, in_paper):
                                        "display (ms)", "total (ms)"])
 
 
-def comparisons_of(size, array, one, speedup, balance, reference, in_paper):
+def comparisons_of(size, array, one, speedup, balance, reference):
     display = "with the printed display of 1,130 ms"
     cycle_ms = 100e-6 * FACTOR  # a budget cycle by the clock
-
-    def row(what, unit, paper, ours, remark, derived=False):
-        return Comparison(what, unit, paper if in_paper else None, ours, remark, derived)
-
-    return [row(f"{size} PEs: objects", "ms", papers.OBJECTS_MS, array["objects"], "words over the host's rate"),
-            row(f"{size} PEs: compute", "ms", papers.COMPUTE_MS, array["compute"], "another scene than ours"),
-            row(f"{size} PEs: image transfer", "ms", papers.IMAGE_MS, array["image"],
-                "the host's rate is this printed figure's"),
-            row(f"{size} PEs: total", "ms", papers.TOTAL_MS, array["total"] + papers.DISPLAY_MS, display),
-            row("1 PE: compute", "ms", papers.ONE_PE_COMPUTE_MS, one["compute"], "another scene than ours"),
-            row("1 PE: total", "ms", papers.ONE_PE_TOTAL_MS, one["total"] + papers.DISPLAY_MS, display),
-            row("cycles a pixel", "", papers.ONE_PE_COMPUTE_MS / cycle_ms / papers.SIZE**2,
-                one["compute"] / cycle_ms / size**2, "of the budget; the paper's by this clock", True),
-            row("speed-up of computing", "", papers.SPEEDUP_16, speedup, "needs no clock"),
-            row("speed-up of the whole job", "", papers.ONE_PE_TOTAL_MS / papers.TOTAL_MS, balance,
-                "our balance, the printed times of one PE, transfers and display", True),
-            row("one processor, 64 bits", "ms", papers.PC_MS, reference,
-                "the paper's PC; ours: this machine, measured, one thread of the reference"),
-            row("the same beside the workstation", "ms", papers.WORKSTATION_MS, reference,
-                "the paper's workstation; ours as above")]
+    rows = [(f"{size} PEs: objects", "ms", papers.OBJECTS_MS, array["objects"], "words over the host's rate"),
+            (f"{size} PEs: compute", "ms", papers.COMPUTE_MS, array["compute"], "another scene than ours"),
+            (f"{size} PEs: image transfer", "ms", papers.IMAGE_MS, array["image"],
+             "the host's rate is this printed figure's"),
+            (f"{size} PEs: total", "ms", papers.TOTAL_MS, array["total"] + papers.DISPLAY_MS, display),
+            ("1 PE: compute", "ms", papers.ONE_PE_COMPUTE_MS, one["compute"], "another scene than ours"),
+            ("1 PE: total", "ms", papers.ONE_PE_TOTAL_MS, one["total"] + papers.DISPLAY_MS, display),
+            ("cycles a pixel", "", papers.ONE_PE_COMPUTE_MS / cycle_ms / papers.SIZE**2,
+             one["compute"] / cycle_ms / size**2, "of the budget; the paper's by this clock", True),
+            ("speed-up of computing", "", papers.SPEEDUP_16, speedup, "needs no clock"),
+            ("speed-up of the whole job", "", papers.ONE_PE_TOTAL_MS / papers.TOTAL_MS, balance,
+             "our balance, the printed times of one PE, transfers and display", True),
+            ("one processor, 64 bits", "ms", papers.PC_MS, reference,
+             "the paper's PC; ours: this machine, measured, one thread of the reference"),
+            ("the same beside the workstation", "ms", papers.WORKSTATION_MS, reference,
+             "the paper's workstation; ours as above")]
+    return [Comparison(*row) for row in rows]
 
 
 def findings_of(size, speedup, array, one, factors, host, reference, fp32, spa22):
@@ -155,8 +153,10 @@ def findings_of(size, speedup, array, one, factors, host, reference, fp32, spa22
             f"times is left on this clock, {gains.iloc[0]:.1f} to {gains.iloc[-1]:.1f} for factors of 1 to 8.",
             f"The host model gives {objects['least']:.2f} .. {objects['largest']:.2f} ms for the words of our scene, "
             "where 2 ms are printed; how many words that scene has is not.",
-            f"A pixel takes one PE {one.time(1)['compute'] / 100e-6 / size**2:.0f} cycles by the instruction budget; by "
-            "this clock the scene of Kohata & Ito takes some 1,520, as 9,888 cycles of 100 ns a pixel are printed [D].",
+            f"A pixel takes one PE {one.time(1)['compute'] / 100e-6 / size**2:.0f} cycles by the instruction budget; "
+            "by this clock the scene of Kohata & Ito takes some 1,520, as 9,888 cycles of 100 ns a pixel are printed "
+            "[D].",
             f"Measured here, warm: one thread in 64 bits takes {1e3 * reference.least:.0f} ms, the device's kernels "
             f"{1e3 * fp32.least:.1f} ms in fp32 and {1e3 * spa22.least:.1f} ms in the SPA's format, whose slowest of "
-            f"{spa22.runs} runs took {100 * (spa22.largest / spa22.least - 1):.0f} % longer; one thread is {slower} the SPA's modelled computing."]
+            f"{spa22.runs} runs took {100 * (spa22.largest / spa22.least - 1):.0f} % longer; one thread is {slower} "
+            "the SPA's modelled computing."]

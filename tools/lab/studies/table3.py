@@ -12,7 +12,7 @@ What does the filter cost, when a larger offset balances better and makes neighb
 - The plots' other offsets follow from the cost image and the shortest routes, which the three renders confirm.
 """
 import pandas as pd
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, papers, study, verdict
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, papers, study, verdict, with_paper
 from raya.lab.laboratory import format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, smoothing_runs
 
@@ -32,7 +32,7 @@ def at_factor(runs, factor):
 def table3(lab, scenes):
     runs = smoothing_runs(lab, scenes, "filter")
     rows, times, near = runs.rows(), runs.times(), runs.near()
-    in_paper = bool(papers.printed(True, runs.scene.name, runs.size))
+    in_paper = papers.is_papers(runs.scene.name, runs.size)
     factors = pd.DataFrame([at_factor(runs, f) for f in sorted([*FACTORS, FACTOR])])
     shown = rows[["p", "rotations", "communication", "filter", "trace", "filtered"]].set_axis(
         ["p", "rotations", "communication (ms)", "filter (ms)", "ray tracing (ms)", "total (ms)"], axis=1)
@@ -40,7 +40,8 @@ def table3(lab, scenes):
         shown.columns, axis=1)
     return Page({"scene": runs.scene.name, "size": runs.size, "pes": runs.size, "format": format_for(runs.scene),
                  "factor": FACTOR},
-                findings_of(runs, rows, near, factors), comparisons_of(rows, in_paper), claims_of(rows, near, factors),
+                findings_of(runs, rows, near, factors), with_paper(in_paper, comparisons_of(rows)),
+                claims_of(rows, near, factors),
                 [Table("table3", "Ray tracing and filter", shown),
                  Table("table3-factors", "The conclusions by the clock's factor", factors),
                  Table("table3-offsets", "Every offset", offsets, on_page=False)],
@@ -49,7 +50,7 @@ def table3(lab, scenes):
                  "each conclusion."], clock=CLOCK, beside=papers.SPA)
 
 
-def comparisons_of(rows, in_paper):
+def comparisons_of(rows):
     figures = [("ray tracing", "trace", (papers.TRACE_0_MS, None, papers.TRACE_16_MS), ""),
                ("filtering", "filtering", (papers.FILTER_0_MS, papers.FILTER_8_MS, papers.FILTER_16_MS),
                 "the clock is made from it"),
@@ -59,15 +60,15 @@ def comparisons_of(rows, in_paper):
         for what, column, printed, remark in figures:
             if i == 1:
                 remark = "predicted from Table 3" if printed[1] else ""
-            all_of.append(Comparison(f"p = {row['p']:.0f}: {what}", "ms", printed[i] if in_paper else None,
-                                     row[column], remark, derived=i == 1))
+            all_of.append(Comparison(f"p = {row['p']:.0f}: {what}", "ms", printed[i], row[column], remark,
+                                     derived=i == 1))
     first, last = rows.iloc[0], rows.iloc[-1]
     return all_of + [
-        Comparison("filter's arithmetic", "ms", papers.FILTER_ARITHMETIC_MS if in_paper else None, first["filter"],
+        Comparison("filter's arithmetic", "ms", papers.FILTER_ARITHMETIC_MS, first["filter"],
                    "the clock's factor is taken from it", derived=True),
         Comparison("exchange's set-up", "ms", None, papers.EXCHANGE_SETUP_MS,
                    "of Table 4, 2 - 2 x 0.3125 ms; within the filtering"),
-        Comparison("total, p = 0 over p = 16", "", papers.FILTERED_0_MS / papers.FILTERED_16_MS if in_paper else None,
+        Comparison("total, p = 0 over p = 16", "", papers.FILTERED_0_MS / papers.FILTERED_16_MS,
                    first["filtered"] / last["filtered"], "needs the clock little", derived=True)]
 
 
@@ -85,8 +86,8 @@ def claims_of(rows, near, factors):
                   f"Rotations counted: {counted}."),
             Claim(papers.SPA, "section on the cyclic mapping", "For communication with neighbours a small p is better.",
                   verdict(rises, not rises),
-                  f"Over the offsets 0..{near['offset'].iloc[-1]} an exchange takes {near['ring_ms'].iloc[0]:.2f} ms at "
-                  f"first and {near['ring_ms'].iloc[-1]:.2f} ms at last, never less for a larger offset.")]
+                  f"Over the offsets 0..{near['offset'].iloc[-1]} an exchange takes {near['ring_ms'].iloc[0]:.2f} ms "
+                  f"at first and {near['ring_ms'].iloc[-1]:.2f} ms at last, never less for a larger offset.")]
 
 
 def findings_of(runs, rows, near, factors):
@@ -97,9 +98,9 @@ def findings_of(runs, rows, near, factors):
     return [f"p = {last} instead of p = {first} costs {lost:.1f} ms more in rotations and "
             f"{'saves' if saved >= 0 else 'loses'} {abs(saved):.0f} ms of ray tracing: the offset "
             f"{'pays' if saved > lost else 'does not pay'} with the filter; it pays {how} of 1 to 8.",
-            f"Of the offsets 0..{len(near) - 1} p = {best['offset']:.0f} takes least in all: {best['total_ms']:.1f} ms; "
-            f"by ray tracing alone it would be p = {near['trace_ms'].idxmin()}. For factors of 1 to 8 the best are p = "
-            f"{', '.join(map(str, factors['best of 0..16'].unique()))}.",
+            f"Of the offsets 0..{len(near) - 1} p = {best['offset']:.0f} takes least in all: {best['total_ms']:.1f} "
+            f"ms; by ray tracing alone it would be p = {near['trace_ms'].idxmin()}. For factors of 1 to 8 the best are "
+            f"p = {', '.join(map(str, factors['best of 0..16'].unique()))}.",
             "The filter's arithmetic is 1.08 ms by the budget and 7 ms in Tables 3 and 4 [D]: how its program was "
             "written is not printed, so the factor between them holds what the budget does not see, too."]
 

@@ -13,7 +13,7 @@ What does supersampling cost, and what do the computation figures of Kohata & It
 """
 import math
 
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, papers, study, verdict
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, papers, study, verdict, with_paper
 from raya.lab.laboratory import format_for
 from raya.lab.spa import CLOCK, FACTOR, run_on_spa, smoothing_runs
 
@@ -25,7 +25,7 @@ def table4(lab, scenes):
     runs = smoothing_runs(lab, scenes, "supersample")
     rows, times = runs.rows(), runs.times()
     filtered = [run_on_spa(lab, runs.scene, runs.size, runs.size, p, "filter") for p in runs.runs]
-    in_paper = bool(papers.printed(True, runs.scene.name, runs.size))
+    in_paper = papers.is_papers(runs.scene.name, runs.size)
     first, last = rows.iloc[0], rows.iloc[-1]
     shown = rows[["p", "rotations", "communication", "compare", "supersample", "u", "trace", "alone", "with_first"]]
     shown = shown.set_axis(["p", "rotations", "communication (ms)", "comparison (ms)", "supersampling (ms)", "u",
@@ -37,36 +37,33 @@ def table4(lab, scenes):
     return Page({"scene": runs.scene.name, "size": runs.size, "pes": runs.size, "format": format_for(runs.scene),
                  "recomputed_share": runs.recomputed, "factor": FACTOR},
                 findings + [recomputed(first, last, runs.recomputed), offset(runs, first, last)],
-                comparisons_of(rows, runs.recomputed, in_paper), claims_of(runs, rows, filtered),
+                with_paper(in_paper, comparisons_of(rows, runs.recomputed)), claims_of(runs, rows, filtered),
                 [Table("table4", "Supersampling", shown),
                  Table("table4-offsets", "Every offset", offsets, on_page=False)], [plot_of(runs, in_paper)],
                 ["Kohata & Ito do not say what their computation holds. Both readings stand here, and what speaks for "
                  "one without any clock."], clock=CLOCK, beside=papers.SPA)
 
 
-def comparisons_of(rows, share, in_paper):
-    def paper(value):
-        return value if in_paper else None
-
+def comparisons_of(rows, share):
     all_of = []
     for row, exchange, computation in ((rows.iloc[0], papers.EXCHANGE_0_MS, papers.SUPERSAMPLE_0_MS),
                                        (rows.iloc[-1], papers.EXCHANGE_16_MS, papers.SUPERSAMPLE_16_MS)):
         name = f"p = {row['p']:.0f}: "
-        all_of += [Comparison(name + "communication", "ms", paper(exchange), row["communication"],
+        all_of += [Comparison(name + "communication", "ms", exchange, row["communication"],
                               "the clock is made from it"),
-                   Comparison(name + "phase alone", "ms", paper(computation), row["alone"],
+                   Comparison(name + "phase alone", "ms", computation, row["alone"],
                               "computation, comparisons included"),
-                   Comparison(name + "with first pass", "ms", paper(computation), row["with_first"],
+                   Comparison(name + "with first pass", "ms", computation, row["with_first"],
                               "computation of both passes")]
     first, middle, last = (rows.iloc[i] for i in range(3))
     return all_of + [
-        Comparison(f"p = {middle['p']:.0f}: communication", "ms", paper(papers.EXCHANGE_8_MS), middle["communication"],
+        Comparison(f"p = {middle['p']:.0f}: communication", "ms", papers.EXCHANGE_8_MS, middle["communication"],
                    "predicted from Tables 3 and 4", derived=True),
-        Comparison("phase alone, p = 0 over p = 16", "", paper(PRINTED_RATIO), first["alone"] / last["alone"],
+        Comparison("phase alone, p = 0 over p = 16", "", PRINTED_RATIO, first["alone"] / last["alone"],
                    "needs no clock", derived=True),
-        Comparison("with first pass, p = 0 over p = 16", "", paper(PRINTED_RATIO),
+        Comparison("with first pass, p = 0 over p = 16", "", PRINTED_RATIO,
                    first["with_first"] / last["with_first"], "needs no clock", derived=True),
-        Comparison("pixels recomputed", "%", paper(50 * (papers.RECOMPUTED_LEAST + papers.RECOMPUTED_MOST)),
+        Comparison("pixels recomputed", "%", 50 * (papers.RECOMPUTED_LEAST + papers.RECOMPUTED_MOST),
                    100 * share, "16 .. 18 %, if Table 4 shows the phase alone", derived=True)]
 
 
@@ -76,11 +73,10 @@ def claims_of(runs, rows, filtered):
     counted = ", ".join(f"{r} for p = {p}" for r, p in zip(rows["rotations"], rows["p"]))
     first, last = rows.iloc[0], rows.iloc[-1]
     alone, both = first["alone"] / last["alone"], first["with_first"] / last["with_first"]
+    how = "as many, and as many words, as" if same else "not as many rotations or words as"
     return [Claim(papers.SPA, "section on anti-aliasing",
                   "Supersampling's comparison communicates exactly as the filter does.", verdict(same, not same),
-                  f"Rotations counted: {counted}; "
-                  f"{'as many, and as many words, as' if same else 'not as many rotations or words as'} the filter's on "
-                  "the same scene."),
+                  f"Rotations counted: {counted}; {how} the filter's on the same scene."),
             Claim(papers.SPA, "Table 4", "p = 16 shortens the computation of supersampling.",
                   verdict(alone > 1 and both > 1, alone <= 1 and both <= 1),
                   f"Printed are 739 and 407 ms, {PRINTED_RATIO:.2f} times. Ours gain {alone:.2f} times in the phase "
@@ -96,10 +92,11 @@ def mean_factor(at_0, at_16):
 def reading(first, last):
     alone = mean_factor(first["alone"], last["alone"])
     both = mean_factor(first["with_first"], last["with_first"])
-    return (f"Table 4 prints {papers.SUPERSAMPLE_0_MS} and {papers.SUPERSAMPLE_16_MS} ms of computation at p = 0 and 16. "
-            f"Ours are {first['alone']:.0f} and {last['alone']:.0f} ms alone, {first['with_first']:.0f} and "
+    return (f"Table 4 prints {papers.SUPERSAMPLE_0_MS} and {papers.SUPERSAMPLE_16_MS} ms of computation at p = 0 and "
+            f"16. Ours are {first['alone']:.0f} and {last['alone']:.0f} ms alone, {first['with_first']:.0f} and "
             f"{last['with_first']:.0f} with the first pass, where {'the first' if alone < both else 'the second'} is "
-            f"nearer: they are {alone:.2f} and {both:.2f} times off, up or down, in the geometric mean of both offsets.")
+            f"nearer: they are {alone:.2f} and {both:.2f} times off, up or down, in the geometric mean of both "
+            "offsets.")
 
 
 def balance(first, last):
@@ -114,9 +111,9 @@ def balance(first, last):
 
 def recomputed(first, last, share):
     within = papers.RECOMPUTED_LEAST <= share <= papers.RECOMPUTED_MOST
-    return (f"{100 * share:.1f} % of the pixels are recomputed, {'within the' if within else 'outside the'} 16-18 % that "
-            f"follow from Table 4's first reading; u of supersampling is {first['u']:.3f} at p = {first['p']:.0f} and "
-            f"{last['u']:.3f} at p = {last['p']:.0f}.")
+    return (f"{100 * share:.1f} % of the pixels are recomputed, {'within the' if within else 'outside the'} 16-18 % "
+            f"that follow from Table 4's first reading; u of supersampling is {first['u']:.3f} at p = {first['p']:.0f} "
+            f"and {last['u']:.3f} at p = {last['p']:.0f}.")
 
 
 def offset(runs, first, last):

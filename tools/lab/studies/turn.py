@@ -61,8 +61,8 @@ def turn(lab, scenes):
         plots.append(plot_of(number, scene.name, own, root))
     return Page({"scenes": settings, "frames": FRAMES, "step_degrees": DEGREES[1], "lowest_view_degrees": 5,
                  "highest_view_degrees": 75}, findings, claims=claims, tables=tables, plots=plots,
-                news=["Kohata & Ito balanced single pictures. Over a turn the imbalance of one mapping moves from frame "
-                      "to frame, and figures show how far an offset that was fitted to the first frame carries."])
+                news=["Kohata & Ito balanced single pictures. Over a turn the imbalance of one mapping moves from "
+                      "frame to frame, and figures show how far an offset that was fitted to the first frame carries."])
 
 
 def finding_of_turn(scene, u, root):

@@ -1,0 +1,134 @@
+// raya study of the load laboratory, as a user runs it: the files that it leaves, and what it refuses without a trace.
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <set>
+
+#include "host/version.hpp"
+#include "tests/cli/failing_device.hpp"
+#include "tests/cli/refusals.hpp"
+#include "tests/document.hpp"
+
+namespace raya {
+namespace {
+
+using Files = std::set<std::string>;
+
+Files files_in(const std::filesystem::path& folder) {
+    Files files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) files.insert(entry.path().filename());
+    return files;
+}
+
+Words study(const std::string& name, const ScratchFolder& outputs, const Words& options = {}) {
+    Words arguments = {"study", name, "-o", outputs / "made/x"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return arguments;
+}
+
+TEST_CASE("a study writes its figures for readers and for programs", "[cli]") {
+    const ScratchFolder outputs;
+    const RunOutcome run = run_raya(study("fig8", outputs, {"--size", "32"}));
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK(run.err.empty());
+    for (const char* part : {"u(0)", "u(8)", "u(16)", "best p of all 32", "fig8.md"})
+        CHECK_THAT(run.out, Catch::Contains(part));
+    const std::filesystem::path folder = outputs / "made/x";
+    CHECK(files_in(folder) == Files{"fig8-all.png", "fig8-all.svg", "fig8-near.csv", "fig8.csv", "fig8.json", "fig8.md",
+                                    "fig8.png", "fig8.svg", "index.html"});
+    const auto json = Document::parse(file_contents(folder / "fig8.json"));
+    CHECK(json["study"] == "fig8");
+    for (const auto& [key, value] : {std::pair<const char*, Document>{"scene", "centre"},
+                                     {"size", 32},
+                                     {"pes", 32},
+                                     {"views", 64},
+                                     {"view_seeds", "1..64"}})
+        CHECK(json["settings"][key] == value);
+    CHECK(json["tables"][1]["name"] == "fig8");
+    CHECK(json["tables"][1]["rows"].size() == 32);
+    CHECK(json["tables"][1]["rows"][31][0] == 31);
+    CHECK(json["run"]["command"] == "raya study fig8 --size 32 -o DIR");
+    CHECK(json["run"]["version"] == std::string("raya ") + raya_version());
+    CHECK_FALSE(json["run"]["device"].get<std::string>().empty());
+    const std::string document = file_contents(folder / "index.html");
+    for (const char* part : {"<svg ", "raya study fig8 --size 32 -o DIR", "</html>"})
+        CHECK_THAT(document, Catch::Contains(part));
+    const std::string csv = file_contents(folder / "fig8.csv"), markdown = file_contents(folder / "fig8.md");
+    CHECK(csv.starts_with("p,u,mean u,+-,least u,largest u,"));
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 33);
+    CHECK_THAT(markdown, Catch::Contains("## Chief figures") && Catch::Contains("(fig8-all.svg)"));
+}
+
+// SimGrid's program lies beside raya, where it is built: a copy of raya elsewhere has none.
+TEST_CASE("without SimGrid its study says what to install, and the others go on without it", "[cli]") {
+    const ScratchFolder outputs, elsewhere;
+    const Surroundings copy{.program = elsewhere / "raya"};
+    std::filesystem::copy_file(RAYA_PROGRAM, copy.program);
+    std::filesystem::create_directory_symlink(std::filesystem::path(RAYA_PROGRAM).parent_path() / "python",
+                                              elsewhere / "python");
+    check_refused(outputs, study("simgrid", outputs), 2, {"study simgrid", "tools/setup --studies", "libsimgrid-dev"},
+                  copy);
+    check_refused(outputs, study("all", outputs, {outputs / "missing.nff"}), 2,
+                  {"study simgrid is left out", "missing.nff"}, copy);
+}
+
+TEST_CASE("a study takes a scene of one's own", "[cli]") {
+    const ScratchFolder outputs;
+    const std::string name = GENERATE("fig7", "fig8", "fig12", "fig13");
+    const RunOutcome run = run_raya(study(name, outputs, {scene_file("glass"), "--size", "20"}));
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    const auto json = Document::parse(file_contents(outputs / "made/x" / (name + ".json")));
+    CHECK(json["settings"]["scene"] == scene_file("glass"));
+    CHECK(json["settings"]["size"] == 20);
+    CHECK_FALSE(contains(run.out, "calibrated"));
+}
+
+TEST_CASE("a file of Python is a study of one's own", "[cli]") {
+    const ScratchFolder outputs;
+    const RunOutcome run = run_raya(study(RAYA_SOURCE_DIR "/docs/my_study.py", outputs, {"--size", "32"}));
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    CHECK(files_in(outputs / "made/x") ==
+          Files{"index.html", "my-study.csv", "my-study.json", "my-study.md", "my-study.png", "my-study.svg"});
+}
+
+TEST_CASE("a study refuses names, sizes and scenes, and leaves no folder behind", "[cli]") {
+    const ScratchFolder outputs;
+    check_refused(outputs, study("fig6", outputs), 2, {"no study fig6 (did you mean fig7?)", "FILE.py"});
+    check_refused(outputs, study(outputs / "none.py", outputs), 2, {"none.py: there is no such file"});
+    for (const char* size : {"0", "8", "16", "5000"})
+        check_refused(outputs, study("fig8", outputs, {"--size", size}), 2,
+                      {std::string("--size ") + size + ":", "17..4096"});
+    for (const char* size : {"32x16", "-1", "1e2", "wide", ""})
+        check_refused(outputs, study("fig8", outputs, {"--size", size}), 2, {"--size"});
+    for (const char* network : {"30", "1,2,3", "-1,0", "1,nan", "2e9,1", "fast,1"})
+        check_refused(outputs, study("ranks", outputs, {"--network", network}), 2, {"--network"});
+    check_refused(outputs, study("fig8", outputs, {"--size", "99999999999"}), 2, {"--size", "99999999999"});
+    check_refused(outputs, study("fig8", outputs, {outputs / "none.nff"}), 2, {"none.nff", "cannot read"});
+    check_refused(outputs, study("images", outputs, {scene_file("glass"), outputs / "none.nff"}), 2, {"none.nff"});
+    check_refused(outputs, study("fig8", outputs, {scene_file("glass"), scene_file("cones")}), 2,
+                  {"fig8 takes one scene", "2 were given"});
+    check_refused(outputs, {"study", "fig8"}, 2, {"--output is required"});
+    check_refused(outputs, {"study", "fig8", "-o", ""}, 2, {"--output", "must not be empty"});
+    check_refused(outputs, study("fig8", outputs, {"--device", "no such device"}), 3, {"no such device"});
+    check_refused(outputs, study("fig8", outputs, {"--size", "17"}), 3, {"CL_OUT_OF_RESOURCES"},
+                  failing_device("clEnqueueNDRangeKernel 1 -5"));
+    check_refused(outputs, study("fig8", outputs), 2, {"cannot start /nonexistent", "python3", "RAYA_PYTHON"},
+                  {.variables = {{"RAYA_PYTHON", "/nonexistent"}}});
+}
+
+TEST_CASE("a study refuses a folder that it cannot make or write before it renders", "[cli]") {
+    const ScratchFolder outputs;
+    check_refused(outputs, {"study", "fig8", "-o", "/dev/null/x"}, 2, {"/dev/null/x", "cannot create directory"});
+    const ScratchFolder closed;
+    ::chmod(closed.path().c_str(), 0555);
+    for (const char* name : {"fig8", "all"})
+        check_refused(closed, {"study", name, "-o", closed.path(), "--size", "32"}, 2, {"not writable"},
+                      {.variables = {}, .as_nobody = true});
+    ::chmod(closed.path().c_str(), 0755);
+}
+
+}  // namespace
+}  // namespace raya

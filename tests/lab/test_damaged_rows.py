@@ -1,0 +1,137 @@
+"""A study whose rows are damaged ends with an error that names the place, and leaves no file behind."""
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, document, plots, worker  # noqa: E402
+from raya.lab.document import write_page  # noqa: E402
+
+STUDY = '''"""Damaged rows
+
+What becomes of them?
+
+- Of {{count}} rows.
+"""
+import numpy as np
+import pandas as pd
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate
+
+
+def run(lab, scenes):
+    rows = pd.DataFrame({{"p": [0, 8, 16], "u": [1.5, 0.4, 0.1]}})
+    {damage}
+    return Page({{"count": len(rows)}}, [f"u is {{estimate(rows['u']).text()}}."],
+                [Comparison("u(16)", "", 0.118, rows["u"].iloc[-1])], tables=[Table("damaged", "u", rows)],
+                plots=[Plot("damaged", "u", "p", "u", [Series("u", rows["p"], rows["u"])])])
+'''
+# What is done to the rows, and what the error says.
+DAMAGES = {"rows = rows.drop(columns='u')": ["damaged.py, line 15", "KeyError", "'u'"],
+           "rows['u'] = rows['u'].where(rows['p'] < 16)": ["comparison 'u(16)'", "nan", "not a number"],
+           "rows = rows[rows['p'] > 16]": ["damaged.py, line 15", "IndexError"],
+           "rows['u'] = ['1.5', 'much', '0.1']": ["damaged.py, line 15", "ValueError", "much"],
+           "rows['p'] = ['0', 'eight', '16']": ["series u", "eight"],
+           "rows.columns = ['u', 'u']": ["damaged.py, line 15"],
+           "return Page({}, tables=[Table('damaged', 'u', [])])": ["table damaged", "no rows"],
+           "return Page({})": ["its docstring has {count}, which no setting fills"],
+           "return Page({'count': 3}, claims=[Claim('', '', 'u falls.', 'yes', '')])": ["u falls.", "verdict 'yes'"],
+           "return Page({'count': 3}, tables=2 * [Table('damaged', 'u', rows)])": ["two files have one name"],
+           "return None": ["returns NoneType, not a Page"]}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setattr(worker, "laboratory", None)
+    return tmp_path
+
+
+def study_with(folder, damage):
+    file = folder / "damaged.py"
+    file.write_text(STUDY.format(damage=damage))
+    return str(file)
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_damage_is_named(folder, damage):
+    options = SimpleNamespace(size=None, network=None, device=None, no_tuned=True)
+    with pytest.raises(ValueError) as error:
+        worker.run_study(study_with(folder, damage), [], folder, options)
+    assert str(error.value).startswith("study damaged: ")
+    for part in DAMAGES[damage]:
+        assert part in str(error.value)
+
+
+def test_rows_without_damage_are_a_page(folder):
+    options = SimpleNamespace(size=None, network=None, device=None, no_tuned=True)
+    page, _ = worker.run_study(study_with(folder, "pass"), [], folder, options)
+    assert (page.title, page.question, page.method) == ("Damaged rows", "What becomes of them?", ["Of 3 rows."])
+
+
+def test_program_ends_without_files(folder):
+    settings = {"study": study_with(folder, next(iter(DAMAGES))), "scenes": [], "output": str(folder / "made/x"),
+                "size": None, "network": None, "device": "", "strict": False, "no_tuned": True, "verbosity": 0}
+    path = os.pathsep.join([str(Path(raya.__file__).absolute().parents[1]), os.environ.get("PYTHONPATH", "")])
+    run = subprocess.run([sys.executable, "-m", "raya.lab", "--settings", json.dumps(settings)], text=True,
+                         capture_output=True, env={**os.environ, "PYTHONPATH": path}, timeout=120)
+    assert run.returncode == 2 and run.stdout == ""
+    assert run.stderr.startswith("raya: study damaged: damaged.py, line 15: KeyError") and run.stderr.count("\n") == 1
+    assert not (folder / "made").exists()
+
+
+def page_of(**members):
+    series = [Series("u", [0, 1], [1.5, 0.4])]
+    return Page({}, tables=[Table("some", "u", [{"p": 0}])], plots=[Plot("some", "u", "p", "u", series)],
+                **members).describe("some", "Some")
+
+
+@pytest.mark.parametrize("module, name", [(plots, "files_of"), (document, "json_of"), (document, "environment")])
+def test_page_that_cannot_be_made_leaves_no_file(tmp_path, monkeypatch, module, name):
+    def fail(*_):
+        raise ValueError("planted")
+
+    monkeypatch.setattr(module, name, fail)
+    with pytest.raises(ValueError, match="planted"):
+        write_page(tmp_path, page_of())
+    assert not list(tmp_path.iterdir())
+
+
+def test_file_that_cannot_be_written_leaves_no_part(tmp_path, monkeypatch):
+    def fail(*_):
+        raise OSError("planted")
+
+    monkeypatch.setattr(os, "replace", fail)
+    with pytest.raises(OSError, match="planted"):
+        write_page(tmp_path, page_of())
+    assert not list(tmp_path.iterdir())
+
+
+def test_missing_values_are_shown_as_such(tmp_path):
+    table = Table("some", "u", [{"p": 0, "u": np.nan}, {"p": 1, "u": np.inf}])
+    page = Page({}, tables=[table], plots=[Plot("some", "u", "p", "u", [Series("u", [0, 1], [np.nan, np.inf])])])
+    write_page(tmp_path, page.describe("some", "Some"))
+    assert (tmp_path / "some.csv").read_text() == "p,u\n0,-\n1,inf\n"
+    assert json.loads((tmp_path / "some.json").read_text())["tables"][0]["rows"] == [[0, None], [1, "inf"]]
+    assert "| 0 | - |\n| 1 | inf |\n" in (tmp_path / "some.md").read_text()
+
+
+@pytest.mark.parametrize("ours", [None, "much", float("nan")])
+def test_comparison_needs_a_number(ours):
+    with pytest.raises(ValueError, match=r"comparison 'u'"):
+        Comparison("u", "", None, ours)
+
+
+@pytest.mark.parametrize("half_widths, y", [([0.1], [1, 2]), ([], [1])])
+def test_series_has_one_length(half_widths, y):
+    with pytest.raises(ValueError, match="series u: .*one length"):
+        Series("u", [0, 1], y, half_widths=half_widths)
+
+
+def test_claim_has_a_verdict():
+    with pytest.raises(ValueError, match="no verdict 'perhaps'"):
+        Claim("", "", "u falls.", "perhaps", "")

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""The laboratory's document in a browser: static HTML that asks for nothing from anywhere and runs no script, no error reaches the console,
+every figure is seen and told in words, text has contrast; at three widths, light and dark, on paper. In the end the checks are tried on
+faults.
+
+    tests/tools/test_document.py PACKAGES       a small document, made with the package raya in this folder (build/python)
+    tests/tools/test_document.py INDEX.html     a document of one's own, no faults; page_checks.py leaves screenshots
+Exit code 77 where there is no Chromium.
+"""
+import math, os, subprocess, sys, tempfile
+from pathlib import Path
+
+import browser
+from page_checks import LOOK, told
+
+WIDTHS = (400, 1000, 1600)
+PLANTED = "<script>document.title = 'planted'</script><img src=x onerror='planted()'> \"&amp;\" `a` | {x} $x$ +- \\.nff"
+
+SMALL = """A small study
+
+Does a document of it hold together?
+
+- One table, one plot.
+"""
+LARGE = """A study of {scene}
+
+What does `{scene}` show?
+
+- Of {scene}, which is long enough
+  for a second line.
+"""
+
+
+def small_page(lab):
+    series = [lab.Series("ours", range(5), [x * x for x in range(5)]), lab.Series("the paper's", [4], [15], "paper")]
+    return lab.Page({}, ["A finding."], [lab.Comparison("u", "ms", 15, 16, "a remark", True, 0.5)],
+                    [lab.Claim("A & B 1999", "Table 1", "It rises.", lab.REPRODUCED, "It does."),
+                     lab.Claim("A & B 1999", "Table 2", "It falls.", lab.UNDECIDED, "Once.")],
+                    [lab.Table("small", "Rows", [{"p": 0, "u": 1.5}, {"p": 8, "u": math.nan}])],
+                    [lab.Plot("small", "A plot", "p", "u", series)], ["No paper has it."]).describe("small", SMALL)
+
+
+def large_page(lab):
+    """Every colour, style and kind of axis, a band and bars; names that would be scripts if they were not text."""
+    def series(number):
+        x = range(1, 60 if number == 1 else 5)
+        style = "steps" if number == 7 else "points" if number == 8 else "line" if number < 7 else "paper"
+        return lab.Series(f"series {number}" if number else PLANTED, x, [math.exp(0.1 * one) + number for one in x], style,
+                          [0.4 * one for one in x] if number < 3 else [])
+
+    return lab.Page({"scene": PLANTED, "seeds": [1, 2, 3]}, [PLANTED], [lab.Comparison(PLANTED, "", None, math.inf)],
+                    [lab.Claim("C 1999", PLANTED, "Never.", lab.NOT_REPRODUCED, PLANTED)],
+                    [lab.Table("large", "All rows", [{"n": i * 37 % 500, PLANTED: PLANTED} for i in range(500)])],
+                    [lab.Plot(f"large-{i}", f"Plot {i} {PLANTED}", "x", "y (ms)", list(map(series, range(11))), log)
+                     for i, log in enumerate(("", "x", "y", "xy"))]).describe("large", LARGE)
+
+
+def write_small_document(packages, folder):
+    sys.path.insert(0, packages)
+    from raya import lab
+    from raya.lab.document import write_document, write_page
+
+    folder = Path(folder)
+    pages = [small_page(lab), large_page(lab)]
+    for page in pages:
+        page.run = {"command": f"raya study {page.name} '{PLANTED}' -o DIR", "version": "raya 1.2.3", "device": PLANTED}
+    write_document(folder, pages, {page.name: write_page(folder, page) for page in pages}, [f"study x: {PLANTED}"])
+
+
+def looks(page, url, count):
+    """All that is wrong with a document of so many figures."""
+    titles = set()
+    views = [(width, dark, True, "") for width in WIDTHS for dark in (False, True)]
+    for width, dark, scripts, media in views + [(1000, False, False, ""), (700, False, True, "print")]:
+        page.open(url, width, dark, scripts, media)
+        page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")  # what is folded counts too
+        view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
+        look = page.value(LOOK)
+        titles.add(look["title"])
+        yield from (view + wrong for wrong in [*look["wrong"], *told(page)])
+        if look["figures"] != count or look["texts"] < 50:
+            yield f"{view}{look['figures']} figures of {count}, {look['texts']} texts"
+        active = page.value("document.querySelectorAll('script, iframe, object, embed, form, button').length")
+        if active:
+            yield f"{view}{active} elements that act"
+    if len(titles) != 1 or titles == {"planted"}:
+        yield f"titles {titles}"
+
+
+# Text of the document, what takes its place, and a part of what must be found wrong then.
+FAULTS = [
+    ("<meta http-equiv=\"Content", "<img src=\"http://127.0.0.1:9/x.png\" alt=\"x\"><meta name=\"Content", "a request"),
+    ("<main>", "<main><img src=\"http://127.0.0.1:9/x.png\" alt=\"x\">", "attribute src"),
+    ("<main>", "<main><script>document.title = 'planted'</script>", "elements that act"),
+    ("</style>", "@font-face { font-family: x; src: url(http://127.0.0.1:9/x) } h1 { font-family: x }</style>", "in the log"),
+    ("--soft: #555555", "--soft: #999999", "a contrast"),
+    ("--plot-000000: #e8e8e6", "--plot-000000: #555555", "dark: a contrast"),
+    ("role=\"img\"", "", "no image"),
+    ("<desc id=", "<desc class=", "without a description"),
+    ("<title id=\"plot-large-0-title\">", "<title class=\"\">", "without a name"),
+    ("plot-large-1-", "plot-large-2-", "an id twice"),
+    (".drawing svg { display: block; width: 100%", ".drawing svg { display: block; width: 10%", "a drawing of"),
+    (".wide { overflow-x: auto; }", "", "in a window of 400"),
+    ("href=\"#small\"", "href=\"#smell\"", "nowhere"),
+    ("&lt;img src=x", "<img src=x", "attribute on"),
+]
+
+
+def faults_missed(page, text, count, folder):
+    for old, new, complaint in FAULTS:
+        if old not in text:
+            yield f"no '{old}' to put a fault into"
+            continue
+        broken = Path(folder, "broken.html")
+        broken.write_text(text.replace(old, new))
+        found = []
+        for wrong in looks(page, broken.as_uri(), count):  # as far as need be
+            found.append(wrong)
+            if complaint in wrong:
+                break
+        else:
+            yield f"with {new!r} for {old!r}: {found[:3]}"
+
+
+def main(given):
+    if browser.program() is None:
+        print("skipped: no Chromium (tools/setup --browser)")
+        return 77
+    with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
+        made = Path(given).is_dir()
+        if made:
+            python = os.environ.get("RAYA_PYTHON", "/usr/bin/python3")  # as `raya study` chooses it
+            subprocess.run([python, __file__, str(Path(given).resolve()), folder], check=True)
+        index = Path(folder, "index.html") if made else Path(given).resolve()
+        text = index.read_text(errors="replace")
+        count = text.count("<figure class=\"plot\">")
+        wrong = list(looks(page, index.as_uri(), count))
+        if made:
+            wrong += [f"{count} figures"] * (count != 5)
+            shown = page.value("document.body.textContent").replace("±", "+-")
+            wrong += [f"{shown.count(part)} times {part}" for part in PLANTED.split("`") if shown.count(part) < 400]
+            wrong += faults_missed(page, text, count, folder) if not wrong else []
+    for line in wrong:
+        print("test_document.py:", line, file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(write_small_document(*sys.argv[1:]) if len(sys.argv) == 3 else main(sys.argv[1]))

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""What studies print of Figs 7, 8 and 9 and Tables 2 and 3, recomputed from `raya render --cost --report` alone.
+
+    tests/tools/test_study_figures.py RAYA     RAYA: the built program
+
+Nothing of raya is used here but its files: the cyclic mapping, u, speed-ups and times are written down anew.
+"""
+import json
+import math
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+SCENE = ROOT / "scenes" / "glass.nff"
+SIZE = 48
+FACTOR = 7 / (256 * 42 * 100e-6)  # the filter's 7 ms [D] over its budget of 42 cycles of 100 ns for 256 pixels
+
+
+def run(*arguments):
+    done = subprocess.run([RAYA, *map(str, arguments)], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+
+
+def read_pfm(path):
+    """Rows of one number a pixel, the top one first."""
+    kind, size, scale, values = path.read_bytes().split(b"\n", 3)
+    assert kind == b"Pf" and float(scale) < 0
+    width, height = map(int, size.split())
+    flat = struct.unpack(f"<{width * height}f", values)
+    return [flat[row * width:(row + 1) * width] for row in reversed(range(height))]
+
+
+def loads(cost, p, pes=SIZE):
+    """PE i has the pixels (j, (j p + i) mod N); with fewer PEs than columns, those of every i that leaves the same rest."""
+    sums = [0] * pes
+    for j, row in enumerate(cost):
+        for i in range(SIZE):
+            sums[i % pes] += row[(j * p + i) % SIZE]
+    return sums
+
+
+def imbalance(sums):
+    mean = sum(sums) / len(sums)
+    return (max(sums) - mean) / mean
+
+
+def table(page, name):
+    """A table's rows as dictionaries, its columns by their labels without units."""
+    found = next(one for one in page["tables"] if one["name"] == name)
+    labels = [column.rsplit(" (", 1)[0] for column in found["columns"]]
+    return [dict(zip(labels, row)) for row in found["rows"]]
+
+
+def ours(page, what):
+    return next(one["ours"] for one in page["comparisons"] if one["what"] == what)
+
+
+class Figures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        folder = Path(cls.scratch.name)
+        cls.reports = {}
+        for p in (0, 16):
+            run("render", SCENE, "-o", folder / "image.pfm", "--machine", "spa", "--pes", SIZE, "--size", SIZE, "--offset", p,
+                "--cost", folder / f"{p}.pfm", "--report", folder / f"{p}.json")
+            cls.reports[p] = json.loads((folder / f"{p}.json").read_text())
+        cls.cost = read_pfm(folder / "0.pfm")
+        cls.other = read_pfm(folder / "16.pfm")
+        cls.pages = {}
+        for study in ("fig7", "fig8", "fig9", "table2", "table3"):
+            run("study", study, SCENE, "--size", SIZE, "-o", folder / study)
+            cls.pages[study] = json.loads((folder / study / f"{study}.json").read_text())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def test_a_pixel_costs_the_same_whoever_has_it(self):
+        self.assertEqual(self.cost, self.other)
+
+    def test_loads_are_those_that_the_report_counted(self):
+        for p, report in self.reports.items():
+            sums = loads(self.cost, p)
+            self.assertEqual(sums, report["load"]["per_pe"])
+            rows = table(self.pages["fig7"], "fig7")
+            self.assertEqual(sums, [row[f"p = {p}"] for row in rows])
+
+    def test_u_of_every_offset(self):
+        rows = table(self.pages["fig8"], "fig8")
+        self.assertEqual(len(rows), SIZE)
+        for row in rows:
+            self.assertAlmostEqual(row["u"], imbalance(loads(self.cost, row["p"])), delta=1e-12)
+        self.assertNotAlmostEqual(rows[5]["u"], imbalance(loads(self.cost, 6)), delta=1e-6)  # the check can fail
+
+    def test_speed_ups_of_every_number_of_pes(self):
+        for row in table(self.pages["fig9"], "fig9"):
+            for label, p in (("p = 0, cyclic fold", 0), ("p = 16, cyclic fold", 16)):
+                sums = loads(self.cost, p, row["P"])
+                self.assertAlmostEqual(row[label], sum(sums) / max(sums), delta=1e-9)
+
+    def test_times_on_the_one_clock(self):
+        total = sum(map(sum, self.cost))
+        self.assertAlmostEqual(ours(self.pages["table2"], "1 PE: compute"), FACTOR * total * 100e-6, delta=1e-6)
+        speedup = total / max(loads(self.cost, 16))
+        rest = 2 + 140 + 1130
+        self.assertAlmostEqual(ours(self.pages["table2"], "speed-up of the whole job"),
+                               (64800 + rest) / (64800 / speedup + rest), delta=1e-9)
+        rotation = 10 / 32 - 768 / 6e3 + 3 * SIZE / 6e3
+        for row in table(self.pages["table3"], "table3"):
+            p = row["p"]
+            ring = 1.375 + 2 * (min(p, SIZE - p) + 1) * rotation
+            self.assertAlmostEqual(row["communication"], ring, delta=1e-9)
+            tracing = FACTOR * max(loads(self.cost, p)) * 100e-6
+            self.assertAlmostEqual(row["total"], tracing + FACTOR * 42 * SIZE * 100e-6 + ring, delta=1e-6)
+
+    def test_means_have_student_intervals(self):
+        for row in table(self.pages["fig8"], "fig8")[:20]:
+            self.assertLessEqual(row["least u"], row["mean u"])
+            self.assertLessEqual(row["mean u"], row["largest u"])
+            # 64 views: a half width is at most 2.0 standard errors, and these at most half the range over root(63)
+            self.assertLess(row["+-"], 2.0 * (row["largest u"] - row["least u"]) / 2 / math.sqrt(63) + 1e-12)
+
+
+if __name__ == "__main__":
+    RAYA = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,112 @@
+"""What both machines take on MPI ranks: predicted from what one rank took, what a render counted, and a network."""
+import numpy as np
+import raya
+from raya.lab.laboratory import format_for
+from raya.lab.voxels import NO_LIMIT, near_cube, powers, sides_text
+
+MOST = 65_536
+SIDES, QUEUE = (8, 8, 8), 1024
+PARTS = ("compute", "host", "exchange", "collect", "broadcast")
+
+
+def rounds(ranks):
+    return (ranks - 1).bit_length()
+
+
+class Ring:
+    """A ring with the filter: as many PEs as the image has columns, or as ranks where these are more."""
+
+    name, label = "ring", "trace"
+
+    def __init__(self, lab, scene, file, size):
+        costs = lab.costs(scene, size)
+        self.arguments = [file, "--machine", "grande", "--accel", "none", "--antialias", "filter", "--format",
+                          format_for(scene), "--size", str(size)]
+        self.ranks = powers(min(MOST, size * size))
+        self.parts = []
+        for ranks in self.ranks:
+            pes = max(size, ranks)
+            offset = (round(pes**0.5) if ranks > size else 16) % size
+            loads = np.bincount(raya.ranks_of_pes(pes, ranks), raya.loads(costs.trace, pes=pes, offset=offset))
+            self.parts.append({"pes": pes, "u": loads.max() / loads.mean() - 1,
+                               "rotations": raya.exchange_rotations(size, size, pes=pes, offset=offset),
+                               "block": 12 * raya.largest_share(size, size, pes=pes, offset=offset),
+                               "image": 12 * size * size, "scene": 4 * costs.job_words})
+        self.arrays = [f"{part['pes']} PEs" for part in self.parts]
+
+    def predict(self, i, one, network, processors):
+        """Seconds by what they are spent on."""
+        part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
+        parts = dict.fromkeys(PARTS, 0.0)
+        parts.update(compute=(one["trace"] * (1 + part["u"]) + one["rest"]) / processors, host=one["host"])
+        if ranks > 1:
+            parts["exchange"] = part["rotations"] * (alpha + beta * part["block"])
+            parts["collect"] = 2 * (ranks - 1) * alpha + beta * part["image"] * (1 - 1 / ranks)
+            parts["broadcast"] = rounds(ranks) * (alpha + beta * part["scene"])
+        return parts
+
+
+class Torus:
+    """A torus of 8 x 8 x 8 nodes, counted in one render; beyond as many ranks, tori whose nodes have been cut
+    further."""
+
+    name, label = "torus", "trace_voxel"
+
+    def __init__(self, lab, scene, file, size):
+        sides = sides_text(SIDES)
+        self.arguments = [file, "--machine", "torus", "--nodes", sides, "--voxels", sides, "--queue", str(QUEUE),
+                          "--size", str(size)]
+        self.ranks = powers(MOST)
+        result = lab.render(scene, machine="torus", size=size, nodes=sides, voxels=sides, queue=QUEUE, packets=True,
+                            pe_memory=NO_LIMIT)
+        nodes = int(np.prod(SIDES))
+        status, words = 4 * raya.STATUS_WORDS * nodes, 4 * result.copied_words
+        counted = {ranks: {**bricks(result, ranks), "status": status, "scene": words, "host": 1}
+                   for ranks in powers(nodes)}
+        self.parts = [counted[r] if r <= nodes else cut_further(counted[nodes], r // nodes) for r in self.ranks]
+        self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed"
+                       for r in self.ranks]
+
+    def predict(self, i, one, network, processors):
+        part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
+        busiest = one["trace"] * part["cycles"] / part["all"] + one["rest"] * part["most"] / part["nodes"]
+        parts = dict.fromkeys(PARTS, 0.0)
+        parts.update(compute=busiest * ranks / processors, host=one["host"] * part["host"])
+        if ranks > 1:
+            others = 1 - 1 / ranks
+            parts["exchange"] = part["messages"] * alpha + part["bytes"] * beta
+            parts["collect"] = part["supersteps"] * (rounds(ranks) * alpha + beta * part["status"] * others)
+            parts["broadcast"] = (ranks - 1) * alpha + beta * part["scene"] * others
+        return parts
+
+
+def bricks(result, ranks):
+    """Sums over the supersteps, each of the rank that has most in it. What the nodes of a brick send over one of their
+    links to the same rank is one message."""
+    rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
+    cycles, words = result.step_cycles, result.step_link_words
+    by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)
+    source, target = np.repeat(rank_of[:, None], 6, 1), rank_of[ends]
+    link = np.broadcast_to(np.arange(6), ends.shape)
+    node, way = np.nonzero(source != target)
+    face = (source[node, way].astype(np.int64) * ranks + target[node, way]) * 6 + link[node, way]
+    faces, index = np.unique(face, return_inverse=True)
+    sums = np.zeros((len(words), len(faces)))  # [superstep, face]
+    np.add.at(sums.T, index, words[:, node, way].T.astype(float))
+    sums = 4 * sums
+    most = {"messages": 0.0, "bytes": 0.0}
+    if len(faces):
+        for name, values in (("messages", (sums > 0).astype(float)), ("bytes", sums)):
+            ways = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
+                    for end in (faces // 6 // ranks, faces // 6 % ranks)]
+            most[name] = np.maximum(*ways).max(1).sum()
+    return {"nodes": len(rank_of), "most": np.bincount(rank_of).max(), "supersteps": len(cycles),
+            "cycles": float(by_rank.max(1).sum()), "all": float(cycles.sum()), **most}
+
+
+def cut_further(part, times):
+    """The torus of so many times as many nodes, each of whose nodes has been cut into so many, a rank for each."""
+    side = times ** (1 / 3)
+    change = {"nodes": times, "supersteps": side, "cycles": 1 / times, "messages": side, "bytes": 1 / side**2,
+              "status": times, "host": side * times}
+    return {name: value * change.get(name, 1) for name, value in part.items()}
