@@ -6,7 +6,7 @@
 namespace raya {
 
 /// Text by path from the project's root: everything below kernels/, the scenes that `bench` and `study` take by
-/// default, styles and scripts of pages, the studies' prose, and tools/plot.py. Defined in a file that the build makes.
+/// default, the names of studies, styles and scripts of pages. Defined in a file that the build makes.
 const std::map<std::string, std::string>& embedded_files();
 
 }  // namespace raya
