@@ -12,6 +12,7 @@
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/cli/bench_rows.hpp"
+#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
@@ -67,7 +68,7 @@ void finish(const BenchCommand& command, const BenchReport& baseline, BenchRepor
                         {"slower", result.slower},      {"other_images", result.other_images},
                         {"rows", result.rows}};
     }
-    write_report_and_page({command.report, command.page}, bench_report_text(now));
+    write_report_and_page({command.report, command.page}, to_json(now));
     if (command.baseline.empty()) return;
     fmt::print("\nheld against {}, of whose rates a row may lose {} %:\n{}", printable(command.baseline),
                command.tolerance, result.text);

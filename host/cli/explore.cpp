@@ -1,10 +1,13 @@
 // raya explore SCENE -o FILE.html: one render's costs as a page in which mapping, offset and PEs can be dragged.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "host/base/encoding.hpp"
 #include "host/base/progress.hpp"
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
@@ -19,11 +22,12 @@
 #include "host/cli/scene_input.hpp"
 #include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
-#include "host/explore/explorer.hpp"
-#include "host/explore/figures.hpp"
+#include "host/image/plain_png.hpp"
 #include "host/model/unit_text.hpp"
+#include "host/report/page/page.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
+#include "host/ring/schedule.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -70,20 +74,68 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     return text;
 }
 
-Exploration exploration_of(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
-                           const RingResult& result) {
-    const std::string accel =
-        settings.accel.kind == AccelKind::kNone ? "" : ", accelerator " + accel_text(settings.accel);
-    return {.scene = scene_name(command),
-            .command = command_of(command, settings),
-            .settings = fmt::format("{}, {}, {} bounces{}", settings.machine.name, format_name(settings.format),
-                                    settings.bounces, accel),
-            .made = fmt::format("Made by raya {} on {} ({}, driver {}).", raya_version(), device.name, device.platform,
-                                device.driver),
-            .machine = settings.machine,
-            .mapping = settings.mapping,
-            .cost = result.cost(),
-            .image = result.image};
+Json rates_of(const Machine& machine) {
+    if (!machine.cycle_ns || !machine.link_words_per_s || !machine.rotation_sync_ms || !machine.host_words_per_s)
+        return {};
+    return {{"cycle_ns", *machine.cycle_ns},
+            {"link_words_per_s", *machine.link_words_per_s},
+            {"rotation_sync_ms", *machine.rotation_sync_ms}};
+}
+
+Json machine_json(const RingSettings& settings) {
+    const raya_mapping& m = settings.mapping;
+    const bool slots = raya_has_slots(m);
+    return {{"name", settings.machine.name},
+            {"pes", m.pes},
+            {"mapping", slots ? "cyclic" : mapping_text(m)},
+            {"offset", slots ? Json(m.parameter) : Json()},
+            {"fold", slots ? Json(m.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic") : Json()},
+            {"format", format_name(settings.format)},
+            {"bounces", settings.bounces},
+            {"accel", accel_text(settings.accel)},
+            {"rates", rates_of(settings.machine)}};
+}
+
+// What the explorer shows: no measured time, so that the same picture is the same page.
+Json exploration(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
+                 const RingResult& result) {
+    return {
+        {"kind", "raya explore"},
+        {"raya", raya_version()},
+        {"scene", scene_name(command)},
+        {"command", command_of(command, settings)},
+        {"machine", machine_json(settings)},
+        {"device", {{"name", device.name}, {"platform", device.platform}, {"driver", device.driver}}},
+        {"image",
+         {{"width", result.image.width}, {"height", result.image.height}, {"png", base64(plain_png(result.image))}}},
+        {"cost", cost_json(result.cost().cycles)}};
+}
+
+// Refuses an image of which no page that can be sent could be made, before it is rendered.
+void check_pixels(const ImageSize& size) {
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // the project's scenes take a byte a pixel
+    if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
+    throw UserError(
+        fmt::format("--size {}x{}: too many pixels for a page that can be sent, {} at most; remedy: a smaller --size",
+                    size.width, size.height, kMaxPixels));
+}
+
+void check_cycles(const std::string& scene, const CostImage& cost) {
+    if (total_cycles(cost) < kExactCycles) return;
+    throw UserError(
+        fmt::format("{}: its pixels take {} cycles, more than a page adds up exactly; remedy: a smaller --size, fewer "
+                    "--bounces, or --accel bvh",
+                    scene, total_cycles(cost)));
+}
+
+void check_bytes(const std::string& scene, const CostImage& cost, std::size_t bytes) {
+    constexpr std::size_t kMaxBytes = 1'000'000;  // so that it goes into a letter
+    if (bytes <= kMaxBytes) return;
+    const double less = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
+    const auto side = [less](std::uint32_t pixels) { return std::max(1, static_cast<int>(less * pixels)); };
+    throw UserError(fmt::format(
+        "{}: a page of {} x {} pixels would have {} bytes, {} at most so that it can be sent; remedy: --size {}x{}",
+        scene, cost.width, cost.height, bytes, kMaxBytes, side(cost.width), side(cost.height)));
 }
 
 void explore(const ExploreCommand& command) {
@@ -91,7 +143,7 @@ void explore(const ExploreCommand& command) {
     std::optional<ProgressBar> bar(std::in_place, true, "reading the scene");
     SceneInput input = read_scene(command.render.scene, command.render.strict);
     change_view(command.render.view, input.scene);
-    check_explorable(image_size(command.render, input.scene));
+    check_pixels(image_size(command.render, input.scene));
     const RingSettings settings = settings_of(command, input.scene);
     warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     bar->stage("preparing");
@@ -104,11 +156,13 @@ void explore(const ExploreCommand& command) {
     const RingResult result =
         renderer.render(bar->active() ? [&](double done) { bar->update(done); } : ProgressCallback{});
     bar->stage("writing");
-    const std::string page = explorer_html(exploration_of(command, settings, session.device(), result));
+    check_cycles(scene_name(command), result.cost());
+    const std::string page = report_page(exploration(command, settings, session.device(), result));
+    check_bytes(scene_name(command), result.cost(), page.size());
     write_whole_file(command.page, page);
     bar.reset();
     if (is_quiet()) return;
-    const Load load = figures_of(result.cost(), settings.mapping, settings.machine).load;
+    const Load load = static_load(result.cost(), settings.mapping);
     fmt::print("{}: {} x {} pixels, opens with {} on {}: u = {:.3f}, speed-up {:.1f}\n",
                printable(input_name(command.render.scene)), settings.mapping.width, settings.mapping.height,
                mapping_text(settings.mapping), counted(settings.mapping.pes, "PE"), load.imbalance, load.speedup);

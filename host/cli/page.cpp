@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
@@ -14,14 +13,10 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
-#include "host/cli/parse.hpp"
-#include "host/cli/parse_mapping.hpp"
 #include "host/error.hpp"
-#include "host/page/html_document.hpp"
 #include "host/report/bench_report.hpp"
+#include "host/report/page/page.hpp"
 #include "host/report/render_report.hpp"
-#include "host/report_page/report_page.hpp"
-#include "host/ring/mapping.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {
@@ -30,20 +25,6 @@ namespace {
 struct PageCommand {
     std::string report, page;
 };
-
-// Of a ring whose pixels a rule divides.
-std::optional<raya_mapping> mapping_of(const Json& report) {
-    const Json &machine = report.at("machine"), &image = report.at("image");
-    const std::string& text = machine.at("mapping").text();
-    if (report.find("torus") != nullptr || is_dynamic(text)) return {};
-    const auto side = [&](const char* key) { return static_cast<std::uint32_t>(image.at(key).whole(kLargestSide)); };
-    MappingRule rule = parse_mapping(text).rule;
-    if (rule.has_slots())
-        rule = cyclic_mapping(static_cast<std::uint32_t>(machine.at("offset").whole(kLargestSide)),
-                              parse_fold(machine.at("fold").text()));
-    return make_mapping(rule, {side("width"), side("height")},
-                        static_cast<std::uint32_t>(machine.at("pes").whole(UINT32_MAX)));
-}
 
 // A page is sent to others: the files that a run names appear without their folders.
 Json without_folders(Json report) {
@@ -65,15 +46,14 @@ Json without_folders(Json report) {
     return report;
 }
 
-std::string page_of(const Json& report) {
+void check_kind(const Json& report) {
     const Json* const kind = report.find("kind");
     const std::string name = kind != nullptr && kind->is_text() ? kind->text() : "";
-    if (name == kRenderReportKind) return render_page(report, mapping_of(report));
-    if (name == kBenchReportKind) return bench_page(report);
-    if (name == kVerifyReportKind) return verify_page(report);
+    for (const char* known : {kRenderReportKind, kBenchReportKind, kVerifyReportKind, "raya gpu_day"})
+        if (name == known) return;
     if (kind == nullptr && (report.find("measured") != nullptr || report.find("devices") != nullptr))
         throw JsonError("the report of an older raya, without the command that wrote it");
-    throw JsonError("valid JSON, but not a report of raya render, bench or verify");
+    throw JsonError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 
 JsonSource source_of(const std::string& name) {
@@ -98,18 +78,16 @@ void check_page_name(const std::string& option, const std::string& file) {
             fmt::format("{} {}: what is written is a page for a browser; let the name end in .html", option, file));
 }
 
-std::string page_of_report(const std::string& report, const std::string& name) {
-    const auto page_from = [](const Json& json) { return page_of(without_folders(json)); };
-    const std::string page = read_json(report, source_of(name), page_from);
-    if (page.size() <= kLargestPage) return page;
-    throw UserError(fmt::format("{}: its page would have {} bytes, {} at most so that it can be sent", name,
-                                page.size(), kLargestPage));
+std::string page_of_report(const std::string& text, const std::string& name) {
+    return read_json(text, source_of(name), [](const Json& report) {
+        check_kind(report);
+        return report_page(without_folders(report));
+    });
 }
 
-void write_report_and_page(const ReportFiles& files, const std::string& report) {
-    if (!files.report.empty()) write_whole_file(files.report, report);
-    if (!files.page.empty())
-        write_whole_file(files.page, page_of_report(report, files.report.empty() ? "the report" : files.report));
+void write_report_and_page(const ReportFiles& files, const Json& report) {
+    if (!files.report.empty()) write_whole_file(files.report, report.dump(2) + "\n");
+    if (!files.page.empty()) write_whole_file(files.page, report_page(without_folders(report)));
 }
 
 void add_page_command(CLI::App& program) {
@@ -127,7 +105,7 @@ void add_page_command(CLI::App& program) {
              "Report of raya render, bench or verify, as --report writes it")
         ->required();
     add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
-             "Page to write: one file for a browser, below 1 MB, that needs no network")
+             "Page to write: one file for a browser that needs no network")
         ->required();
     command->callback([options] { make_page(*options); });
 }

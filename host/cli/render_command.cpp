@@ -118,7 +118,7 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 }
 
 void write_report(const RenderCommand& command, const RenderReport& report) {
-    if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report).dump(2) + "\n");
+    if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report));
     if (!is_quiet() && command.summary) fmt::print("{}", printable(human_summary(report)));
     if (!command.profile || !command.prints) return;
     const auto& measured = report.measured;

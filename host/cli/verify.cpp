@@ -115,7 +115,7 @@ void run_verify(const VerifyCommand& command) {
         right = right && all.back().is_right();
     }
     if (all.size() > 1) print_overall(all);
-    write_report_and_page({command.report, command.page}, report_of(all, command.depth()).dump(2) + "\n");
+    write_report_and_page({command.report, command.page}, report_of(all, command.depth()));
     if (!right) throw CheckFailure{};
 }
 

@@ -13,6 +13,7 @@
 #include "host/model/t805.hpp"
 #include "host/python/session.hpp"
 #include "host/torus/async_machine.hpp"
+#include "host/torus/buffer_plan.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_settings.hpp"
 #include "host/torus/torus_trace.hpp"

@@ -80,7 +80,7 @@ Json measured_json(const BenchMeasurement& row) {
 
 Json rates_json(const BenchMeasurement& row) { return {{"best", row.best_rate()}, {"median", row.median_rate()}}; }
 
-std::string bench_report_text(const BenchReport& report) {
+Json to_json(const BenchReport& report) {
     Json rows = Json::list();
     for (const BenchMeasurement& row : report.rows) rows.push_back(row_json(row));
     Json json = {{"kind", kBenchReportKind},
@@ -92,7 +92,7 @@ std::string bench_report_text(const BenchReport& report) {
                    {"driver", report.driver}}},
                  {"rows", rows}};
     if (!report.compared.is_null()) json["compared"] = report.compared;
-    return json.dump(2) + "\n";
+    return json;
 }
 
 BenchReport read_bench_report(const fs::path& path) {

@@ -43,10 +43,10 @@ Json rates_json(const BenchMeasurement& row);
 /// By which a report is known again: its member "kind".
 inline constexpr const char* kBenchReportKind = "raya bench";
 
-/// The report as JSON text, its kind first.
-std::string bench_report_text(const BenchReport& report);
+/// The report, its kind first.
+Json to_json(const BenchReport& report);
 
-/// Reads what bench_report_text() wrote, but for rooflines and comparison. Throws UserError with file, reason and
+/// Reads what to_json() made, but for rooflines and comparison. Throws UserError with file, reason and
 /// remedy for a file that cannot be read, is no such report, or holds a row that cannot be one.
 BenchReport read_bench_report(const std::filesystem::path& path);
 

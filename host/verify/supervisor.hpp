@@ -16,17 +16,6 @@
 
 namespace raya {
 
-/// The devices that a text names: "all" the usable ones, else one as choose_device() has it. DeviceError as there.
-struct NamedDevices {
-    std::vector<cl::Device> devices;
-    std::vector<std::string> left_out;  // lines about those that cannot be used
-};
-NamedDevices named_devices(const std::string& wanted);
-
-/// Checks device number `index` of those that `wanted` names and writes the lines above to the file `lines`. What goes
-/// wrong becomes a line, not an exception.
-void run_worker(int lines, const std::string& wanted, std::size_t index, const VerifySettings& settings);
-
 /// What a device says of itself, and what came of its checks.
 struct DeviceChecks {
     std::string name, platform, version, driver;

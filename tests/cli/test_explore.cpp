@@ -26,8 +26,10 @@ TEST_CASE("explore writes a page and says what it opens with", "[cli]") {
     CHECK_THAT(run.out, Contains("24 x 16 pixels, opens with cyclic:3 on 20 PEs: u = ") && Contains("page    " + page));
     const std::string html = file_contents(page);
     CHECK_THAT(html, StartsWith("<!doctype html>"));
-    CHECK_THAT(html, Contains("<span>--mapping</span> <span>cyclic:3</span> <span>--pes</span> <span>20</span>"));
-    CHECK_THAT(html, Contains("raya explore: spheres.nff"));
+    for (const char* member :
+         {"\"scene\": \"spheres.nff\"", "\"mapping\": \"cyclic\"", "\"offset\": 3", "\"fold\": \"block\"",
+          "\"pes\": 20", "raya render spheres.nff -o image.png --size 24x16"})
+        CHECK_THAT(html, Contains(member));
     CHECK(folder.entries() == 1);
     const RunOutcome again =
         run_raya(small({"-o", page, "--pes", "20", "--mapping", "cyclic:3", "--fold", "block", "--quiet"}));
@@ -68,6 +70,17 @@ TEST_CASE("explore refuses more pixels than a page can hold before it renders th
     INFO(run.told());
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Contains("--size 1500x1500: too many pixels for a page") && Contains("remedy"));
+    CHECK(folder.entries() == 0);
+}
+
+TEST_CASE("explore refuses a page that is too large to be sent", "[cli][.][long]") {
+    const ScratchFolder folder;
+    const RunOutcome run =
+        run_raya({"explore", scene_file("centre"), "-o", folder / "page.html", "--size", "1400", "--pes", "4",
+                  "--lanes", "4", "--bounces", "3", "--machine", "grande", "--format", "fp32"});
+    INFO(run.told());
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Contains("1000000 at most so that it can be sent; remedy: --size 1"));
     CHECK(folder.entries() == 0);
 }
 

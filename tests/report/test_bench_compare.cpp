@@ -59,7 +59,7 @@ TEST_CASE("a bench report is read back as it was", "[bench]") {
             written.rows.back().rays = random();
             written.rows.back().scene = "scene " + std::to_string(random());
         }
-        std::ofstream(folder / "b.json") << bench_report_text(written);
+        std::ofstream(folder / "b.json") << to_json(written).dump();
         const BenchReport read = read_bench_report(folder / "b.json");
         CHECK(read.driver == written.driver);
         REQUIRE(read.rows.size() == written.rows.size());
@@ -73,7 +73,7 @@ TEST_CASE("a bench report is read back as it was", "[bench]") {
 
 TEST_CASE("files that are no bench report are refused with a remedy", "[bench]") {
     const ScratchFolder folder;
-    const std::string good = bench_report_text(report({row(1, 2, 3)}));
+    const std::string good = to_json(report({row(1, 2, 3)})).dump();
     const auto changed = [&](const auto& change) {
         Document json = Document::parse(good);
         change(json);

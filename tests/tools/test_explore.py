@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""The explorer's page in a browser: its figures are the program's, to the last printed digit, in hundreds of random settings; it asks for
-nothing from anywhere; controls, pointer, keys and links do what they say; at three widths, light and dark, on paper and without scripts.
+"""The explorer's page in a browser: its figures are those of `raya render`, to the last printed digit, for every static mapping; it asks
+for nothing from anywhere; controls, pointer, keys and links do what they say; at three widths, light and dark, on paper and without scripts.
 In the end the checks are tried on faults.
 
-    tests/tools/test_explore.py EXPLORER_CASES RAYA      EXPLORER_CASES: tests/explore/write_explorer_cases.cpp
+    tests/tools/test_explore.py RAYA
 RAYA_THOROUGH=1: more settings, every fault. RAYA_EXPLORE_SEED: another seed. Exit code 77 where there is no Chromium.
 """
-import json, os, random, re, subprocess, sys, tempfile
+import base64, gzip, json, os, random, re, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
 from page_checks import LOOK, told
+from page_report import report_of, with_report
 
 THOROUGH = os.environ.get("RAYA_THOROUGH") == "1"
 SEED = int(os.environ.get("RAYA_EXPLORE_SEED", "1993"))
@@ -26,10 +27,10 @@ FOLLOW = r"""(async (cases) => {
       location.hash = link;
       await heard;
     }
-    while (whole && explorer.curves.known < explorer.about.width) await new Promise((done) => setTimeout(done, 5));
+    while (whole && explorer.curves.known < explorer.size.width) await new Promise((done) => setTimeout(done, 5));
     const texts = Object.fromEntries([...document.querySelectorAll("[data-figure]")].map((e) => [e.dataset.figure, e.textContent]));
     const {figures: f, curves} = explorer;
-    answers.push({texts, imbalance: f.imbalance, pes: f.setting.pes, message: document.getElementById("message").hidden ? "" : document.getElementById("message").textContent,
+    answers.push({texts, imbalance: f.imbalance, pes: f.setting.pes, moves: [f.rotations, f.rotations * f.setting.pes * 3 * f.share, f.transfers, f.broadcasts], message: document.getElementById("message").hidden ? "" : document.getElementById("message").textContent,
                   ...(whole ? {loads: [...f.loads], cyclic: [...curves.values.cyclic], block: [...(curves.values.block || curves.values.cyclic)]} : {})});
   }
   return answers;
@@ -44,62 +45,152 @@ def start(page, url, **view):
     page.open("about:blank")  # a link within a page would not load it anew
     page.open(url, **view)
     if view.get("scripts", True):
-        page.value("explorer.ready")
+        page.value("ready")
+
+
+WIDE, HIGH = 48, 36
+SQUARE = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, whose rates are known
+# Both folds with fewer, as many and more PEs than columns, dividing and not; every other mapping, sides that differ.
+SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5", 20, "cyclic"), ("cyclic:5", 20, "block"), ("cyclic:40", 12, "block"),
+            ("cyclic:11", 100, "cyclic"), ("cyclic:11", 100, "block"), ("column", 7, "block"), ("rows", 7, ""), ("blocks", 10, ""), ("grid:3x8", 24, ""),
+            ("grid:7x2", 14, ""), ("tiles:8x3", 9, ""), ("random:1", 17, ""), ("random:4000000000", 48, "")]
+
+
+def some_setting(rng):
+    kind, pes = rng.choice(["cyclic", "cyclic", "rows", "blocks", "grid", "tiles", "random"]), rng.choice([1, 12, 48, rng.randint(2, 300)])
+    a, b = rng.randint(1, 12), rng.randint(1, 12)
+    more = {"cyclic": f":{rng.randrange(WIDE)}", "grid": f":{a}x{b}", "tiles": rng.choice([":8x6", ":4x4", ":1x36"]), "random": f":{rng.randrange(2 ** 32)}"}
+    return kind + more.get(kind, ""), a * b if kind == "grid" else pes, rng.choice(["cyclic", "block"]) if kind == "cyclic" else ""
+
+
+def grouped(number):
+    return f"{number:,}".replace(",", "\u202f")
+
+
+def rendered(raya, folder, scene, settings):
+    """What the page must say in each setting, of renders: by loads; and where the 3 x 3 filter is not refused, of what it moves."""
+    # A machine without a limit of memory: a PE's pixels move at once.
+    report, size = Path(folder, "report.json"), ["--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32"]
+
+    def render(mapping, pes, fold, *more):
+        options = ["--mapping", mapping, "--pes", str(pes), *(["--fold", fold] if fold else []), *more]
+        out = subprocess.run([raya, "render", scene, "-o", Path(folder, "x.ppm"), *size, *options, "--report", report], check=True, capture_output=True, text=True)
+        return json.loads(report.read_text()), out.stdout
+
+    for mapping, pes, fold in settings:
+        made, out = render(mapping, pes, fold)
+        load, link = made["load"], f"mapping={mapping}&pes={pes}" + (f"&fold={fold}" if fold else "")
+        u, speedup, efficiency = re.search(r"^load +u = (.*?), speed-up (.*?), efficiency (.*? %)", out, re.M).groups()
+        loads = load["per_pe"]
+        of_pe = lambda cycles: f"{grouped(cycles)} cycles (PE {loads.index(cycles)})"
+        texts = {"u": u, "speedup": speedup, "efficiency": efficiency, "busiest": of_pe(max(loads)), "idlest": of_pe(min(loads)),
+                 "mean": grouped(round(load["mean"], 1)) + " cycles"}
+        case = {"link": link, "texts": texts, "imbalance": load["imbalance"], "pes": pes, "loads": loads, "mapping": mapping, "fold": fold}
+        if not mapping.startswith("random"):
+            ring, bus, broadcast = (render(mapping, pes, fold, "--antialias", "filter", "--exchange", way)[0]["communication"] for way in ("ring", "bus", "bus-broadcast"))
+            case["moves"] = [ring["rotations"], ring["rotation_words"], bus["transfers"], broadcast["pe_broadcasts"]]
+            texts["bus"] = f"{grouped(bus['transfers'])} transfers or {grouped(broadcast['pe_broadcasts'])} broadcasts"
+        yield case
 
 
 def compared(page, cases):
-    """What differs between the page and the program."""
-    asked = [{"link": case["link"], "whole": "loads" in case} for case in cases]
+    """What differs between the page and the renders."""
+    asked = [{"link": case["link"], "whole": True} for case in cases]
     for case, answer in zip(cases, page.value(f"{FOLLOW}({json.dumps(asked)})")):
         if answer["message"]:
             yield f"{case['link']}: '{answer['message']}'"
-        for part in ("texts", "imbalance", "pes", "loads", "cyclic", "block"):
+        if case["mapping"].startswith("cyclic"):
+            case["u_here"], answer["u_here"] = case["imbalance"], answer[case["fold"]][int(case["mapping"].split(":")[1])]
+        answer["texts"] = {name: answer["texts"][name] for name in case["texts"]}
+        for part in ("texts", "imbalance", "pes", "loads", "u_here", "moves"):
             if part in case and case[part] != answer[part]:
-                ours, theirs = case[part], answer[part]
-                if part == "texts":
-                    ours, theirs = [{k: v for k, v in a.items() if a[k] != b.get(k)} for a, b in ((ours, theirs), (theirs, ours))]
-                yield f"{case['link']}: {part}: the program says {str(ours)[:200]}, the page {str(theirs)[:200]}"
+                yield f"{case['link']}: {part}: the program says {str(case[part])[:200]}, the page {str(answer[part])[:200]}"
 
 
-def figures(page, html):
-    """One page beside the program's figures of it."""
-    said = json.loads(html.with_suffix(".json").read_text())
-    start(page, html.as_uri())
-    yield from compared(page, said["cases"])
-    numbers = page.value(f"{json.dumps(said['numbers'])}.map(({{value, digits}}) => fixed(value, digits))")
-    for one, text in zip(said["numbers"], numbers):
-        if one["text"] != text:
-            yield f"{one['value']!r} with {one['digits']} digits: the program says {one['text']}, the page {text}"
-    yield from told(page)
+def arithmetic(page):
+    """What no render prints: shortest vectors by all pairs, Kohata & Ito's rotations on their array, digits as fmt has them, times."""
+    wrong = page.value("""(() => {
+      const wrong = [], side = 48;
+      const check = (setting, width) => {
+        const size = {width, height: side}, owners = ownersOf(setting, size), vector = vectorOf(setting, size);
+        let least = Infinity;
+        for (let i = 0; i < owners.length; ++i)
+          for (let j = 0; j < i; ++j)
+            if (owners[i] === owners[j]) least = Math.min(least, (Math.floor(i / width) - Math.floor(j / width)) ** 2 + (i % width - j % width) ** 2);
+        if (!vector || vector[0] ** 2 + vector[1] ** 2 !== least) wrong.push(`${JSON.stringify(setting)}: vector ${vector}, nearest pair ${least}`);
+      };
+      for (const pes of [8, 12, 24]) for (let offset = 0; offset < 24; ++offset) check({kind: "slots", fold: "cyclic", offset, pes}, pes === 24 ? 48 : 24);
+      for (const [a, b] of [[3, 5], [5, 3], [4, 4], [1, 6]]) check({kind: "grid", pes: a * b, a, b}, 30);
+      check({kind: "rows", pes: 7}, 30);
+      for (const [fold, pes] of [["cyclic", 7], ["cyclic", 48], ["block", 12]])
+        if (vectorOf({kind: "slots", fold, offset: 3, pes}, {width: 24})) wrong.push(`${fold} ${pes} is no lattice`);
+      for (const [offset, rotations] of [[0, 2], [8, 18], [16, 34]]) {
+        const size = {width: 256, height: 256}, f = figuresOf({kind: "slots", fold: "cyclic", offset, pes: 256}, size, new Float64Array(65536).fill(1),
+          {cycle_ns: 100, link_words_per_s: 1e6, rotation_sync_ms: 0.25});
+        if (f.rotations !== rotations || f.share !== 256 || f.imbalance !== 0) wrong.push(`p = ${offset}: ${f.rotations} rotations`);
+        if (Math.abs(f.time.compute - 0.0256) > 1e-9 || Math.abs(f.time.rotations - rotations * (0.25 + 0.768)) > 1e-9) wrong.push(`p = ${offset}: ${f.time.compute} and ${f.time.rotations} ms`);
+      }
+      return wrong;
+    })()""")
+    rng = random.Random(SEED)
+    numbers = [(rng.choice([rng.randrange(1 << 20) * 2.0 ** -rng.randrange(12), rng.randrange(1 << 30) / rng.randint(1, 100000)]), i % 4) for i in range(400)]
+    for (value, digits), text in zip(numbers, page.value(f"{json.dumps(numbers)}.map(([value, digits]) => fixed(value, digits))")):
+        if text != f"{value:.{digits}f}":
+            wrong.append(f"{value!r} with {digits} digits: {text}")
+    return wrong
+
+
+def costs(page, html, folder):
+    """Costs of any size come back, up to 2^53 - 1 in all; a page whose costs are not whole says so."""
+    report, rng, changed = report_of(html.read_text()), random.Random(SEED), Path(folder, "costs.html")
+    for bits in (0, 9, 33, 41):
+        cycles = [rng.getrandbits(bits) if bits else 0 for _ in range(WIDE * HIGH)]
+        if bits == 41:
+            cycles[-1] += 2 ** 53 - 1 - sum(cycles)
+        bytes_ = max(1, (max(cycles).bit_length() + 7) // 8)
+        planes = b"".join(bytes(cost >> 8 * byte & 255 for cost in cycles) for byte in range(bytes_))
+        report["cost"] = {"bytes": bytes_, "gzip": base64.b64encode(gzip.compress(planes)).decode()}
+        changed.write_text(with_report(html.read_text(), report))
+        start(page, changed.as_uri())
+        if page.value("[...explorer.costs]") != cycles or page.value("explorer.figures.sum") != sum(cycles) or grouped(sum(cycles)) not in page.value("document.body.innerText"):
+            yield f"costs of {bits} bits do not come back"
+        if not bits and page.value("[explorer.figures.busiest, explorer.figures.idlest]") != [0, 0]:
+            yield "of equal loads the first PE is not named"
+        yield from told(page)
+    report["cost"]["bytes"] += 1
+    changed.write_text(with_report(html.read_text(), report))
+    start(page, changed.as_uri())
+    if "cannot be shown: the costs within the page are not whole" not in page.value("document.body.innerText"):
+        yield "costs that are not whole are not named"
 
 
 def looks(page, html):
     """At all widths, light and dark, on paper, without scripts."""
-    said = json.loads(html.with_suffix(".json").read_text())["cases"][0]
     for width, dark, scripts, media in [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]:
         start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
         view = f"{width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
-        if scripts:
-            page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
+        if not scripts:
+            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *told(page)])
+            if page.value("JSON.parse(document.getElementById('report').innerText).kind") != "raya explore":
+                yield f"{view}the report is not shown as JSON"
+            continue
+        page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
         look = page.value(LOOK)
         yield from (view + wrong for wrong in [*look["wrong"], *told(page)])
-        if look["texts"] < 50 or "planted" in look["title"] and "<script>" not in look["title"]:
+        if look["texts"] < 50 or look["title"] != "raya explore: spheres.nff":
             yield f"{view}{look['texts']} texts, title {look['title']}"
-        texts = page.value("Object.fromEntries([...document.querySelectorAll('[data-figure]')].map((e) => [e.dataset.figure, e.textContent]))")
-        if texts != said["texts"]:
-            yield f"{view}opens with {texts}, not {said['texts']}"
         controls = page.value(NAMES)
         if any(not name for _, name in controls):
             yield f"{view}without a name: {controls}"
-        if bool(controls) != (scripts and not media):
+        if bool([id for id, _ in controls if id == "offset"]) == bool(media):
             yield f"{view}{len(controls)} controls"
-        shown = page.value("[...document.querySelectorAll('.stage > *')].filter((e) => e.checkVisibility()).map((e) => e.tagName).join()")
-        if shown != ("CANVAS" if scripts else "IMG"):
-            yield f"{view}the picture is shown as '{shown}'"
         for canvas in page.value("[...document.querySelectorAll('canvas')].filter((e) => e.checkVisibility()).map((e) => [e.id, new Set(new Uint32Array("
                                  "e.getContext('2d').getImageData(0, 0, e.width, e.height).data.buffer)).size, e.getBoundingClientRect().width])"):
             if canvas[1] < 4 or canvas[2] < 200:
                 yield f"{view}canvas {canvas[0]} has {canvas[1]} colours and is {canvas[2]} pixels wide"
+        for name, marks, width_ in page.value("[...document.querySelectorAll('svg')].map((e) => [e.getAttribute('aria-label'), e.querySelectorAll('path').length, e.getBoundingClientRect().width])"):
+            if len(name) < 20 or marks < 8 or width_ < 200:
+                yield f"{view}a drawing '{name}' of {marks} paths, {width_} pixels wide"
 
 
 def key(page, name):
@@ -209,43 +300,6 @@ def handled(page, html):
     yield from told(page)
 
 
-def rendered(page, raya, folder, count):
-    """A page of a scene beside renders of it, as they are printed and reported."""
-    rng, size = random.Random(SEED), ["--size", "48x36", "--machine", "grande", "--accel", "none", "--lanes", "4"]
-    html = Path(folder, "scene.html")
-    scene = str(SCENES / "spheres.nff")
-    said = subprocess.run([raya, "explore", scene, "-o", html, *size], check=True, capture_output=True, text=True).stdout
-    if f"page    {html} ({html.stat().st_size / 1e3:.0f} KB)" not in said:
-        yield f"raya explore says {said}"
-    start(page, html.as_uri())
-    for _ in range(count):
-        kind, pes, fold = rng.choice(["cyclic", "column", "rows", "blocks", "grid", "tiles"]), rng.choice([12, 48, rng.randint(2, 200)]), "cyclic"
-        more = {"cyclic": f":{rng.randrange(48)}", "grid": f":{rng.randint(1, 12)}x{rng.randint(1, 12)}", "tiles": rng.choice([":8x6", ":4x4", ":1x36"])}.get(kind, "")
-        options = ["--mapping", kind + more]
-        if kind == "grid":
-            pes = eval(more[1:].replace("x", "*"))
-        if kind in ("cyclic", "column"):
-            fold = rng.choice(["cyclic", "block"])
-            options += ["--fold", fold]
-        report = Path(folder, "report.json")
-        out = subprocess.run([raya, "render", scene, "-o", Path(folder, "x.ppm"), *size, "--pes", str(pes), *options, "--antialias", "filter", "--report", report],
-                             check=True, capture_output=True, text=True).stdout
-        link = f"mapping={kind}{more}&pes={pes}&fold={fold}"
-        answer = page.value(f"{FOLLOW}([{{link: '{link}', whole: true}}])")[0]
-        made, texts = json.loads(report.read_text()), answer["texts"]
-        line = f"u = {texts['u']}, speed-up {texts['speedup']}, efficiency {texts['efficiency']} "
-        if line not in out:
-            yield f"{link}: the page says {line}, the program {out}"
-        rotations = made["communication"]["rotations"]
-        words = rotations and made["communication"]["rotation_words"] // rotations // pes
-        if answer["loads"] != made["load"]["per_pe"] or answer["message"]:
-            yield f"{link}: loads {str(answer['loads'])[:80]} {answer['message']}, the program's {str(made['load']['per_pe'])[:80]}"
-        narrow = texts["rotations"].replace("\u202f", "")
-        if not narrow.startswith(f"{rotations} rotations of {words or ''}"):
-            yield f"{link}: the page says {texts['rotations']}, the program {rotations} rotations of {words} words"
-    yield from told(page)
-
-
 # Text of the page, what takes its place; what it says of some setting must be found wrong then.
 FAULTS = [
     ("slot % pes :", "(slot + 1) % pes :"),
@@ -269,7 +323,7 @@ FAULTS = [
     ("rows * rows < square", "rows < 3"),
     ("width % pes === 0 : width === pes", "true : width === pes"),
     ("b <= a ? [0, b] : [a, 0]", "[a, 0]"),
-    ("1e-6 * machine.cycleNs", "1e-6 * 99"),
+    ("1e-6 * rates.cycle_ns", "1e-6 * 99"),
     ("3 * share;", "share;"),
     ("Number(down.at(-1)) % 2 === 0 ? down : ", ""),
     ("2 ** (8 * Math.floor(at / pixels))", "2 ** (7 * Math.floor(at / pixels))"),
@@ -277,43 +331,49 @@ FAULTS = [
 ]
 
 
-def faults_missed(page, pages, folder):
+def faults_missed(page, html, cases, folder):
+    text, broken = html.read_text(), Path(folder, "broken.html")
     for old, new in FAULTS if THOROUGH else FAULTS[::6]:
-        for html in pages:
-            text = html.read_text()
-            if text.count(old) != 1:
-                yield f"'{old}' stands {text.count(old)} times in the page, where a fault is to go"
-                break
-            broken = Path(folder, "broken.html")
-            broken.write_text(text.replace(old, new))
-            broken.with_suffix(".json").write_bytes(html.with_suffix(".json").read_bytes())
-            if next(figures(page, broken), None):
-                break
-        else:
+        if text.count(old) != 1:
+            yield f"'{old}' stands {text.count(old)} times in the page, where a fault is to go"
+            continue
+        broken.write_text(text.replace(old, new))
+        start(page, broken.as_uri())
+        if not [*compared(page, cases), *arithmetic(page)] and not [*costs(page, broken, folder)]:
             yield f"nobody sees {new!r} for {old!r}"
 
 
 def main():
-    cases, raya = sys.argv[1:3]
+    raya, scene = sys.argv[1], str(SCENES / "spheres.nff")
     if browser.program() is None:
         print("skipped: no Chromium (tools/setup --browser)")
         return 77
-    count = 120 if THOROUGH else 40
-    wrong = []
+    wrong, rng = [], random.Random(SEED)
+    settings = SETTINGS + [some_setting(rng) for _ in range(40 if THOROUGH else 0)]
     with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
-        subprocess.run([cases, folder, str(SEED), str(count)], check=True)
-        pages = sorted(Path(folder).glob("*.html"))
-        for html in pages:
-            wrong += [f"{html.stem}: {text}" for text in figures(page, html)]
-            if html.stat().st_size >= 1e6 or re.search(r"https?:", html.read_text()):
-                wrong.append(f"{html.stem}: {html.stat().st_size} bytes, or an address")
-        print(f"seed {SEED}: {len(pages)} pages with {count} settings each: {len(wrong)} complaints")
-        square = Path(folder, "square.html")
+        def explore(name, *size):
+            html = Path(folder, name)
+            said = subprocess.run([raya, "explore", scene, "-o", html, *size], check=True, capture_output=True, text=True).stdout
+            assert f"page    {html} ({html.stat().st_size / 1e3:.0f} KB)" in said, said
+            assert not re.search(r"https?://(?!www.w3.org/2000/svg)", html.read_text())
+            return html
+
+        html = explore("scene.html", "--size", f"{WIDE}x{HIGH}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32")
+        square = explore("square.html", *SQUARE)
+        cases = list(rendered(raya, folder, scene, settings))
+        start(page, html.as_uri())
+        wrong += [*compared(page, cases), *arithmetic(page), *told(page), *costs(page, html, folder)]
+        print(f"seed {SEED}: {len(cases)} settings, {len(wrong)} complaints")
+        report = Path(folder, "square.json")
+        subprocess.run([raya, "render", scene, *SQUARE, "-o", Path(folder, "x.ppm"), "--report", report, "--quiet"], check=True)
+        start(page, square.as_uri())
+        time = page.value("explorer.texts.time")
+        if not time.startswith(f"{json.loads(report.read_text())['modelled_ms']['compute']:.1f} ms to trace, "):
+            wrong.append(f"the page says {time}")
         wrong += looks(page, square)
         wrong += handled(page, square)
-        wrong += rendered(page, raya, folder, 24 if THOROUGH else 4)
         if not wrong:
-            wrong += faults_missed(page, [p for p in pages if p.stem in ("wide", "odd", "huge", "nothing", "square", "large")], folder)
+            wrong += faults_missed(page, html, cases, folder)
     for line in wrong:
         print("test_explore.py:", line, file=sys.stderr)
     return 1 if wrong else 0

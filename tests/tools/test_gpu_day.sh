@@ -43,6 +43,7 @@ here=$(dirname "$0")
 fault() { [[ -e $here/$1 ]]; }
 case $1 in
     --version) echo "raya 0.0.0" ;;
+    page) cp "$2" "$4" ;;
     devices) if fault no_device; then echo "raya: no OpenCL device"; exit 3; else echo toy; fi ;;
     verify)
         fault slow_verify && sleep 20
@@ -102,6 +103,9 @@ gpu_day --all
 expect 0 "Nothing of what has run" "64 x 64, 30 spheres" "balls 2, bvh" "roofline, tuning | 1" "goals, ranks |" "torus-spa22: "
 [[ $page != *"not done"* && $page != *"not measured"* ]] || fail "the page is not complete"
 [[ $page == "$(<"$out/page.md")" ]] || fail "page.md is another page"
+[[ -s $out/page.html ]] || fail "no page for a browser"
+[[ $(grep -c '^{"name": .*"verdict": "right"' "$out/report.json") == $(cat "$out"/steps/*.code | grep -c ' right$') ]] || fail "report.json has other steps"
+! command -v python3 >/dev/null || python3 -m json.tool "$out/report.json" >/dev/null || fail "report.json is no JSON"
 (($(wc -l <"$out/page.md") < 130)) || fail "more than a page"
 
 # A count that is not the expected one; then a hash.

@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
 """Pages of reports in a browser: they ask for nothing from anywhere, fit their window, and can be read at three widths, light and dark, on
-paper, without scripts, without sight and by keys alone; their columns sort. In the end the checks are tried on faults.
+paper, without scripts, without sight and by keys alone; their columns sort. No text of a report becomes a part of its page, and a damaged report is
+named as one. In the end the checks are tried on faults.
 
     tests/tools/test_pages.py RAYA [FOLDER]      FOLDER: pictures of all views are left there
-Exit code 77 where there is no Chromium.
+RAYA_PAGE_SEED: of the damage, RAYA_PAGE_DAMAGE: how many reports of each kind. Exit code 77 where there is no Chromium.
 """
-import json, subprocess, sys, tempfile
+import json, os, random, subprocess, sys, tempfile
 from pathlib import Path
 
 import browser
 from page_checks import LOOK, told
+from page_report import HOSTILE, gpu_day, places, report_of, with_report
 
 WIDTHS = (400, 820, 1400)
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
+RAYA = sys.argv[1]
+SEED, DAMAGE = int(os.environ.get("RAYA_PAGE_SEED", "20")), int(os.environ.get("RAYA_PAGE_DAMAGE", "8"))
 VIEWS = [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]
 
 # Landmarks, headings and tables as those find them who do not see; boxes that scroll can be reached by keys.
@@ -27,9 +31,8 @@ BUILD = r"""(() => {
     level = +h.tagName[1];
   }
   for (const svg of document.querySelectorAll("svg")) {
-    const {width, height} = svg.getBoundingClientRect(), words = document.getElementById(svg.getAttribute("aria-describedby"));
-    if (svg.getAttribute("role") !== "img" || !svg.getAttribute("aria-label") || !/Across: .+ Up: .+ Series: .+/.test(words?.textContent))
-      wrong.push("a drawing without a name or words");
+    const {width, height} = svg.getBoundingClientRect();
+    if (svg.getAttribute("role") !== "img" || !(svg.getAttribute("aria-label")?.length > 20)) wrong.push("a drawing without words");
     if (width < 250 || height < 30 || svg.querySelectorAll("path").length < 2 || svg.querySelectorAll("text").length < 2) wrong.push(`a drawing of ${width} x ${height}`);
     const box = svg.viewBox.baseVal;
     for (const e of svg.querySelectorAll("text, path")) {
@@ -38,6 +41,9 @@ BUILD = r"""(() => {
     }
   }
   if (!document.documentElement.lang) wrong.push("no language");
+  for (const c of document.querySelectorAll("canvas"))
+    if (c.getAttribute("role") !== "img" || !c.getAttribute("aria-label") || new Set(new Uint32Array(c.getContext("2d").getImageData(0, 0, c.width, c.height).data.buffer)).size < 2)
+      wrong.push("a map without words or colours");
   for (const t of document.querySelectorAll("table"))
     if (!t.getAttribute("aria-label") || !t.tHead || [...t.tHead.rows[0].cells].some((c) => c.scope !== "col")) wrong.push("a table without a name or headers");
   for (const e of document.querySelectorAll("main *"))
@@ -58,7 +64,6 @@ def make(raya, folder):
         subprocess.run([raya, "page", files[0], "-o", again, "--quiet"], check=True)
         assert again.read_bytes() == files[1].read_bytes(), f"{name}: raya page makes another page"
         again.unlink()
-        assert files[1].stat().st_size < 1e6
         pages[name] = files[1]
 
     image = ["-o", Path(folder, "x.ppm"), "--quiet"]
@@ -69,36 +74,128 @@ def make(raya, folder):
     one("dynamic", "render", SCENES / "planes.nff", *small, "--pes", "12", "--mapping", "dynamic:4", *image)
     one("torus", "render", SCENES / "planes.nff", *small, "--machine", "torus", *image)
     one("verify", "verify", "--only", "machine")
+    report = json.loads(Path(folder, "verify.json").read_text())
+    report["devices"][0]["checks"][2] |= {"status": "FAIL", "told": "1 of `20` words +- 0", "where": "PE 3 <b>", "expected": "0x1 & so on", "got": "line\n" * 200,
+                                          "build_options": "-DX", "remedies": ["another driver", "`RAYA_BUILD_OPTIONS`"]}
+    report["devices"][0]["failed"] = 1
+    Path(folder, "failed.json").write_text(json.dumps(report))
+    pages["failed"] = Path(folder, "failed.html")
+    subprocess.run([raya, "page", Path(folder, "failed.json"), "-o", pages["failed"], "--quiet"], check=True)
     bench = ["bench", SCENES / "planes.nff", *small, "--samples", "2"]
     one("base", *bench, "--format", "fp32,e6m15")
+    for made, name in zip(gpu_day(raya, Path(folder, "day")), ("gpu_day.json", "gpu_day.html")):
+        pages["gpu_day"] = made.rename(Path(folder, name))
     one("bench", *bench, "--compare", Path(folder, "base.json"), "--tolerance", "100")
     return pages
+
+
+def start(page, url, **view):
+    page.open(url, **view)
+    if view.get("scripts", True):
+        page.value("ready")
 
 
 def looks(page, name, html, folder):
     report = json.loads(html.with_suffix(".json").read_text())
     for width, dark, scripts, media in VIEWS:
         view = f"{name}, {width} pixels{', dark' * dark}{', no scripts' * (not scripts)}{', on paper' * bool(media)}: "
-        page.open(html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
+        start(page, html.as_uri(), width=width, dark=dark, scripts=scripts, media=media)
         if folder:
             page.picture(Path(folder, f"{name}-{width}-{media or ('dark' if dark else 'light') + '-plain' * (not scripts)}.png"))
+        if not scripts:
+            if json.loads(page.value("document.getElementById('report').innerText"))["kind"] != report["kind"] or not page.value("document.getElementById('report').checkVisibility()"):
+                yield f"{view}the report is not shown as JSON"
+            yield from (view + wrong for wrong in [*page.value(LOOK)["wrong"], *told(page)])
+            continue
         page.value("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
         look = page.value(LOOK)
         yield from (view + wrong for wrong in [*look["wrong"], *page.value(BUILD), *told(page)])
-        if look["texts"] < 40 or not look["title"].startswith("raya "):
-            yield f"{view}{look['texts']} texts, title {look['title']}"
-        if bool(look["buttons"]) != scripts:
-            yield f"{view}{look['buttons']} headers that sort"
-    body = html.read_text()
-    if "<script>alert" in body or "background-color: rgb" in body:
-        yield f"{name}: a name has become a part of the page"
-    if "image" in report and f">{report['load']['imbalance']:.3f}<" not in body:
-        yield f"{name}: u is not told"
+        if look["texts"] < 40 or not look["title"].startswith("raya ") or not look["buttons"]:
+            yield f"{view}{look['texts']} texts, {look['buttons']} headers that sort, title {look['title']}"
+    text = page.value("document.body.innerText")
+    if "cannot be shown" in text:
+        yield f"{name}: a part cannot be shown"
+    if "image" in report:
+        load = report["load"]
+        for words in (f"{load['imbalance']:.3f}", f"{load['speedup']:.1f} of {report['machine']['pes']}", report["image"]["hash"], report["device"]["driver"]):
+            if words not in text:
+                yield f"{name}: {words} is not shown"
+    for check in [check for device in report.get("devices", []) for check in device["checks"]]:
+        if check["name"] not in text or check["status"] == "FAIL" and check["expected"] not in text:
+            yield f"{name}: nothing of the check {check['name']}"
+
+
+def maps(page, name, html):
+    """Each pixel of the map of loads has the colour of its owner's load: as many colours as there are loads; of a torus one cell a node."""
+    loads = set(json.loads(html.with_suffix(".json").read_text())["load"]["per_pe"])
+    start(page, html.as_uri())
+    colours = page.value("(() => { const c = document.querySelector('canvas'); return new Set(new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer)).size; })()")
+    if not 0.5 * len(loads) < colours <= len(loads) + 1:
+        yield f"{name}: {colours} colours of {len(loads)} loads"
+
+
+STRUCTURE = """[...document.querySelectorAll("*")].filter((e) => /^(SCRIPT|STYLE|TEMPLATE|IFRAME|OBJECT|LINK|META|BASE)$/.test(e.tagName)
+  || [...e.attributes].some(({name}) => name.startsWith("on"))).length"""
+NAMED = {"kind", "png", "mapping", "fold", "links", "format", "status"}  # without which a part is not shown
+
+
+def hostile(page, name, html, folder):
+    """Every text of the report, and names of members that are shown, as a page must not take them."""
+    text, changed = html.read_text(), Path(folder, "hostile.html")
+    start(page, html.as_uri())
+    whole = page.value(STRUCTURE)
+    for spared in (NAMED, {"kind"}):
+        report = report_of(text)
+        for holder, key in list(places(report, lambda value: isinstance(value, str))):
+            if key not in spared:
+                holder[key] = HOSTILE
+        for part in ("rays", "shading", "load"):
+            if part in report:
+                report[part][HOSTILE] = 7
+        saved = Path(folder, "hostile.json")
+        saved.write_text(json.dumps(report))
+        if name == "explore":
+            changed.write_text(with_report(text, report))
+        else:
+            subprocess.run([RAYA, "page", saved, "-o", changed, "--quiet"], check=True)
+        start(page, changed.as_uri())
+        page.value("new Promise((done) => setTimeout(done, 200))")
+        yield from (f"{name}, hostile: {wrong}" for wrong in [*told(page), *(w for w in page.value(LOOK)["wrong"] if "attribute" in w)])
+        if page.value("window.hit"):
+            yield f"{name}: a text of the report was run"
+        if page.value(STRUCTURE) != whole:
+            yield f"{name}: a text of the report has become a part of the page"
+        if "window.hit = 1</script>" not in page.value("document.body.innerText"):
+            yield f"{name}: hostile text is not shown as text"
+        start(page, changed.as_uri(), scripts=False)
+        if "\\u003c/pre" not in page.value("document.getElementById('report').textContent"):
+            yield f"{name}: the report is not whole without scripts"
+
+
+def damaged(page, name, html, folder, count):
+    """Members left out or of another type: the page names them, and no script breaks."""
+    text, rng, named, changed = html.read_text(), random.Random(SEED), 0, Path(folder, "damaged.html")
+    for i in range(count):
+        report = report_of(text)
+        holder, key = rng.choice([place for place in places(report, lambda value: True) if rng.random() < 0.2 or place[1] != 0] or [(report, "kind")])
+        if rng.random() < 0.4 and isinstance(holder, dict):
+            del holder[key]
+        else:
+            holder[key] = rng.choice([None, True, -1, 1.5, 1e300, "<b>'\"&", [], {}, [[]], 2 ** 40])
+        changed.write_text(with_report(text, report))
+        start(page, changed.as_uri())
+        yield from (f"{name}, damage {i} at {key}: {wrong}" for wrong in told(page))
+        shown = page.value("document.body.innerText")
+        named += "cannot be shown" in shown
+        if len(shown) < 60:
+            yield f"{name}, damage {i} at {key}: an empty page"
+    if not named:
+        yield f"{name}: none of {count} damaged reports is named as such"
 
 
 def sorts(page, html):
     """The loads' table by size, narrow spaces or not."""
-    page.open(html.as_uri(), width=1400)
+    start(page, html.as_uri(), width=1400)
     order = page.value(r"""(() => { const t = document.querySelector("#counts table"); const b = t.tHead.querySelectorAll("button")[1]; b.click();
       return [...t.tBodies[0].rows].map((r) => +r.cells[1].textContent.replace(/\D/g, "")); })()""")
     if order != sorted(order) or len(order) < 5:
@@ -107,17 +204,17 @@ def sorts(page, html):
 
 # A text of the page, what takes its place: some complaint must follow.
 FAULTS = [
-    ("<main>", "<main><img src=\"https://example.invalid/x.png\" alt=\"x\">"),
-    ("alt=\"The rendered picture", "alt=\"\" title=\"The rendered picture"),
+    ('<main id="main">', '<main id="main"><img src="https://example.invalid/x.png" alt="x">'),
+    ("`The rendered picture of ${str(r, \"scene\")}, ${pixels}`", '""'),
     ("--ink: #1b1b1b", "--ink: #cccccc"),
-    ("id=\"loads\"", "id=\"pictures\""),
-    ("<h3>Builds", "<h4>Builds"),
-    ("<th scope=\"col\"", "<th"),
-    ("base64,iVBOR", "base64,xxxxx"),
-    ("</main>", "</main><script>console.log(1)</script>"),
-    ("class=\"pictures\"", "style=\"width: 2000px\""),
-    ("tabindex=\"0\" role=\"region\"", ""),
-    ("role=\"img\"", ""),
+    ('"loads", torus', '"pictures", torus'),
+    ('make("h3", {}, prose(title))', 'make("h4", {}, prose(title))'),
+    ('scope: "col"', 'title: "col"'),
+    ("iVBORw0KGgo", "xxxxxxxxxxx"),
+    ('document.title = `${kicker}', 'console.log(1); document.title = `${kicker}'),
+    (".pictures {", ".pictures { width: 2000px;"),
+    ('tabindex: 0, role: "region"', 'title: "x"'),
+    ('role: "img", "aria-label": words', 'title: words'),
 ]
 
 
@@ -135,7 +232,7 @@ def faults_missed(page, html, folder):
 
 
 def main():
-    raya, pictures = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else None
+    raya, pictures = RAYA, sys.argv[2] if len(sys.argv) > 2 else None
     if browser.program() is None:
         print("skipped: no Chromium (tools/setup --browser)")
         return 77
@@ -144,7 +241,15 @@ def main():
         pages = make(raya, folder)
         for name, html in pages.items():
             wrong += looks(page, name, html, pictures)
+            wrong += hostile(page, name, html, folder)
+            wrong += damaged(page, name, html, folder, DAMAGE)
         wrong += sorts(page, pages["ring"])
+        for name in ("ring", "torus"):
+            wrong += maps(page, name, pages[name])
+        explore = Path(folder, "explore.html")
+        subprocess.run([raya, "explore", SCENES / "planes.nff", "--size", "48x32", "--lanes", "4", "-o", explore, "--quiet"], check=True)
+        wrong += hostile(page, "explore", explore, folder)
+        wrong += damaged(page, "explore", explore, folder, DAMAGE)
         wrong += faults_missed(page, pages["ring"], folder)
     print("\n".join(wrong))
     print(f"{len(pages)} pages in {len(VIEWS)} views: {len(wrong)} faults; {len(FAULTS)} planted ones seen")

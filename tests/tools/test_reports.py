@@ -12,6 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 sys.dont_write_bytecode = True
+from page_report import gpu_day, report_of
 from report_damage import Damage
 from report_schema import read_schemas
 try:
@@ -160,6 +161,10 @@ class Reports:
         self.one("verify", *check, "--kernel-dir", "kernels", code=4)
         for words in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
             self.take("info", f"info {words[0]}", self.run(self.raya, "info", *words, "--json", say=subprocess.PIPE))
+        self.take("gpu_day", "tools/gpu_day", gpu_day(self.raya, self.folder / "day")[0].read_text())
+        for mapping in ("cyclic:3", "rows"):
+            self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "1", "--format", "fp32", "-o", "e.html")
+            self.take("explore", "raya explore", json.dumps(report_of((self.folder / "e.html").read_text())))
         for study in ("table2", "table4"):
             self.one("study", "study", study, "--size", "32", "-o", "study", of=f"study/{study}.json")
 

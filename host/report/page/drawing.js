@@ -1,0 +1,172 @@
+// Drawings as SVG in the page's own colours, and maps of pixels, each with words for those who do not see it.
+"use strict";
+
+// --- Colours: OKLCH (B. Ottosson, "A perceptual color space for image processing", 2020), so that all hues are as
+// light. Hue: degrees.
+
+function rgbOf(light, chroma, hue) {
+  const a = chroma * Math.cos(hue * Math.PI / 180), b = chroma * Math.sin(hue * Math.PI / 180);
+  const l = (light + 0.3963377774 * a + 0.2158037573 * b) ** 3, m = (light - 0.1055613458 * a - 0.0638541728 * b) ** 3;
+  const s = (light - 0.0894841775 * a - 1.291485548 * b) ** 3;
+  return [
+    4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+    -0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s
+  ].map((linear) => {
+    const v = Math.min(Math.max(linear, 0), 1);
+    return Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
+  });
+}
+
+const hueOf = (pe, pes) => (205 + 360 * pe / pes) % 360;
+const bright = (pe, pes, light, alpha = 1) => `rgb(${rgbOf(light, 0.13, hueOf(pe, pes)).join(" ")} / ${alpha})`;
+const wordOf = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;  // a pixel of a canvas, the least byte first
+
+// word(row, column): of each pixel.
+function pixelMap(width, height, words, word) {
+  const canvas = make("canvas", {class: "picture", width, height, role: "img", "aria-label": words});
+  const pixels = new Uint32Array(width * height), context = canvas.getContext("2d");
+  for (let row = 0, at = 0; row < height; ++row)
+    for (let column = 0; column < width; ++column, ++at) pixels[at] = word(row, column);
+  context.putImageData(new ImageData(new Uint8ClampedArray(pixels.buffer), width, height), 0, 0);
+  return canvas;
+}
+
+// value -> word: red above the mean, blue below, full at the value that lies farthest from it.
+function diverging(values) {
+  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+  const farthest = values.reduce((most, value) => Math.max(most, Math.abs(value - mean)), 0) || 1;
+  return (value) => {
+    const way = (value - mean) / farthest, far = Math.min(Math.abs(way), 1);
+    return wordOf(rgbOf(0.93 - 0.4 * far, 0.17 * far, way < 0 ? 255 : 29));
+  };
+}
+
+// --- SVG. Units of the drawing; letters are 12.5 high (style.css).
+
+const WIDE = 480, HIGH = 250, LEFT = 52, RIGHT = 456, TOP = 26, BOTTOM = 212;
+
+function svg(tag, attributes, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+const at = (v) => v.toFixed(2);
+const path = (kind, d) => svg("path", {class: kind, d});
+const line = (kind, ...points) => path(kind, "M" + points.map(([x, y]) => `${at(x)} ${at(y)}`).join("L"));
+const box = (kind, x0, y0, x1, y1) => path(kind, `M${at(x0)} ${at(y0)}H${at(x1)}V${at(y1)}H${at(x0)}Z`);
+const label = (anchor, x, y, text) => svg("text", {x: at(x), y: at(y), "text-anchor": anchor}, text);
+const dot = (x, y, radius = 4, kind = "dot") => svg("circle", {class: kind, cx: at(x), cy: at(y), r: radius});
+
+const chart = (words, marks, high = HIGH) => svg(
+  "svg", {class: "chart", viewBox: `0 0 ${WIDE} ${high}`, role: "img", "aria-label": words},
+  box("ground", 0, 0, WIDE, high), ...marks.flat());
+
+// Round numbers from 0 to `most`, about `count` of them.
+function ticksOf(most, count) {
+  const raw = most / count, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].find((s) => s * power >= raw * 0.999) * power;
+  return Array.from({length: Math.floor(most / step * 1.0001) + 1}, (_, i) => Number((i * step).toPrecision(6)));
+}
+
+// An axis: `to` maps a value to 0..1; `whole`: of numbers that stand for things.
+function linear(name, most, count, whole = false) {
+  const [unit, prefix] = most >= 1e9 ? [1e9, "thousand million "] :
+    most >= 1e6                      ? [1e6, "million "] :
+    most >= 1e4                      ? [1e3, "thousand "] :
+                                       [1, ""];
+  const ticks = ticksOf(most, count).filter((tick) => !whole || Number.isInteger(tick));
+  return {
+    name: whole ? name : prefix + name,
+    to: (v) => v / most,
+    ticks,
+    text: (tick) => String(Number((tick / (whole ? 1 : unit)).toPrecision(6)))
+  };
+}
+
+function decades(name, least, most) {
+  const begin = Math.floor(Math.log10(least)), end = Math.max(begin + 1, Math.ceil(Math.log10(most)));
+  const step = Math.max(1, Math.ceil((end - begin) / 8)), ticks = [];
+  for (let power = begin; power <= end; power += step) ticks.push(10 ** power);
+  return {
+    name,
+    to: (v) => (Math.log10(v) - begin) / (end - begin),
+    ticks,
+    text: (tick) => String(Number(tick.toPrecision(6))),
+    least: 10 ** begin
+  };
+}
+
+function plane(across, up) {
+  const x = (v) => LEFT + (RIGHT - LEFT) * across.to(v), y = (v) => BOTTOM - (BOTTOM - TOP) * up.to(v);
+  const grid = [label("start", 4, 14, up.name), label("end", RIGHT, HIGH - 4, across.name)];
+  for (const tick of up.ticks)
+    grid.push(line("grid", [LEFT, y(tick)], [RIGHT, y(tick)]), label("end", LEFT - 6, y(tick) + 4, up.text(tick)));
+  for (const tick of across.ticks) grid.push(label("middle", x(tick), BOTTOM + 16, across.text(tick)));
+  return {x, y, grid};
+}
+
+// Bars from 0 by their number, and a line at their mean. Many share columns: dark up to the least of a column, pale up
+// to the most. `colour(i)`: of one bar, where it has its own.
+function bars(words, [across, up], values, mean, {colour = null, top = 0} = {}) {
+  const count = values.length, columns = count <= 416 ? count : 208, wide = (RIGHT - LEFT) / columns,
+        gap = columns > 100 ? 0.1 : 0.2;
+  const most = values.reduce((a, b) => Math.max(a, b), Math.max(top, 1e-9));
+  const {x, y, grid} = plane(linear(across, count, 8, true), linear(up, most * 1.04, 5)), marks = [];
+  for (let column = 0; column < columns; ++column) {
+    const from = Math.floor(column * count / columns),
+          own = values.slice(from, Math.floor((column + 1) * count / columns));
+    const low = Math.min(...own), high = Math.max(...own), left = x(column * count / columns) + wide * gap / 2,
+          right = left + wide * (1 - gap);
+    if (high > low) marks.push(box("bar pale", left, y(high), right, y(low)));
+    marks.push(box("bar", left, y(low), right, BOTTOM));
+    if (colour)
+      for (const mark of marks.slice(high > low ? -2 : -1)) mark.style.fill = colour(from, own.length);
+  }
+  return chart(words, [grid, marks, line("mark", [LEFT, y(mean)], [RIGHT, y(mean)])]);
+}
+
+// Bars below each other, each with its name above it: {name, text, value, mark}; mark: a line across it, of what it is
+// compared with.
+function namedBars(words, rows) {
+  const most = rows.reduce((a, {value, mark = 0}) => Math.max(a, value, mark), 1e-300), x = (v) => 6 + 358 * v / most;
+  return chart(
+    words, rows.map(({name, text, value, mark}, i) => {
+      const y = 36 * i + 14, end = Math.max(x(value), 7);
+      return [
+        label("start", 6, y, name), box("bar", 6, y + 4, end, y + 16),
+        label("start", Math.max(end, x(mark ?? 0)) + 6, y + 14, text),
+        ...(mark === undefined ? [] : [line("mark", [x(mark), y + 1], [x(mark), y + 19])])
+      ];
+    }),
+    36 * rows.length + 6);
+}
+
+// Points [operations a byte, operations a second], numbered from 1, below the roof min(across * slope, top); a second,
+// lower top is dashed.
+function roof(words, slope, tops, points) {
+  const xs = [tops[0][1] / slope, ...points.map(([x]) => x)],
+        ys = [...tops.map(([, v]) => v), ...points.map(([, y]) => y)];
+  const across = decades("operations a byte", Math.min(...xs) / 2, Math.max(...xs) * 2);
+  const up = decades("thousand million operations a second", Math.min(...ys) / 1.5, Math.max(...ys) * 1.2);
+  const {x, y, grid} = plane(across, up), from = Math.max(across.least, up.least / slope);
+  for (const tick of across.ticks) grid.push(line("grid", [x(tick), TOP], [x(tick), BOTTOM]));
+  const marks = tops.flatMap(
+    ([name, top], i) =>
+      [i ? line("roof dashed", [x(Math.max(from, top / slope)), y(top)], [RIGHT, y(top)]) :
+           line("roof", [x(from), y(from * slope)], [x(top / slope), y(top)], [RIGHT, y(top)]),
+       label("end", RIGHT, y(top) - 5, name)]);
+  marks.push(label("start", x(from) + 4, Math.min(y(from * slope) + 14, BOTTOM - 4), "copies"));
+  const taken = [];  // labels; one below the last that is near
+  const places = points.map(([px, py], i) => [x(px), y(py), i + 1]).sort((a, b) => a[1] - b[1]);
+  for (const [px, py, number] of places) {
+    const right = px + 22 > RIGHT, lx = right ? px - 8 : px + 8;
+    let ly = py + 4;
+    for (const [ox, oy] of taken)
+      if (Math.abs(ox - lx) < 18 && ly < oy + 12) ly = oy + 12;
+    taken.push([lx, ly]);
+    marks.push(dot(px, py), label(right ? "end" : "start", lx, ly, String(number)));
+  }
+  return chart(words, [grid, marks]);
+}

@@ -1,0 +1,228 @@
+// The explorer: the page of one render's costs. Reads them, keeps the state, and has shown what model.js computes of
+// it.
+"use strict";
+
+// Options break between lines, not within.
+const commandWords = (text) => text.split(" ").flatMap((word, i) => [i ? " " : "", make("span", {}, word)]);
+
+const explorer = {
+  report: null,
+  size: null,
+  state: null,
+  figures: null,
+  hovered: null,
+  pointed: "",
+  curves: {pes: 0, known: 0, values: null, best: null, worst: 0},
+
+  get focus() { return this.hovered ?? this.state.pe; },
+  get root() { return rootOf(this.figures.setting.pes); },  // may lie beyond the last offset
+
+  // --- From the report to the first view
+
+  async start(report) {
+    const {width, height} = this.size = {width: whole(report, "image.width"), height: whole(report, "image.height")};
+    this.report = report;
+    this.opens = stateOf(member(report, "machine", "object"), this.size);
+    this.rates = has(report, "machine.rates") ? member(report, "machine.rates", "object") : null;
+    this.costs = await this.read();
+    this.most = this.costs.reduce((most, cost) => Math.max(most, cost), 0);
+    await this.look();
+    $("main").append($("explorer").content.cloneNode(true));
+    const texts = {
+      width,
+      machine: str(report, "machine.name"),
+      made: `Made by raya ${str(report, "raya")} on ${str(report, "device.name")} (${
+        str(report, "device.platform")}, driver ${str(report, "device.driver")}).`
+    };
+    for (const element of document.querySelectorAll("[data-text]")) element.textContent = texts[element.dataset.text];
+    fillControls(this);
+    listen(this);
+    listenToPointer(this);
+    this.follow();
+  },
+
+  // Planes of bytes, the lowest first, packed by gzip.
+  async read() {
+    const packed = Uint8Array.from(atob(str(this.report, "cost.gzip")), (c) => c.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+    const pixels = this.size.width * this.size.height, costs = new Float64Array(pixels);
+    if (bytes.length !== pixels * whole(this.report, "cost.bytes"))
+      throw new Error("the costs within the page are not whole");
+    for (let at = 0; at < bytes.length; ++at) costs[at % pixels] += bytes[at] * 2 ** (8 * Math.floor(at / pixels));
+    return costs;
+  },
+
+  // The picture's pixels, and how light each is.
+  async look() {
+    const {width, height} = this.size, photo = picture(this.report, "image.png", "the picture");
+    const context = make("canvas", {width, height}).getContext("2d");
+    await photo.decode();
+    context.drawImage(photo, 0, 0, width, height);
+    this.photo = context.getImageData(0, 0, width, height);
+    this.levels = Uint8Array.from({length: width * height}, (_, at) => {
+      const [r, g, b] = this.photo.data.subarray(4 * at, 4 * at + 3);
+      return Math.round((0.2126 * r + 0.7152 * g + 0.0722 * b) / 255 * 63);
+    });
+  },
+
+  // --- From controls and pointer to the state
+
+  choose(name, value) {
+    this.state[name] = value;
+    this.show();
+  },
+
+  hover(pe, words = "") {
+    if (pe === this.hovered && words === this.pointed) return;
+    [this.hovered, this.pointed] = [pe, words];
+    this.soon();
+  },
+
+  pick(pe) { this.choose("pe", pe); },
+
+  // A link that was followed, or the page's own.
+  follow() {
+    if (location.hash === this.hash) return;
+    const {state, problems} = withLink(this.opens, location.hash, this.size);
+    $("message").textContent = problems.length ? `The link asks for what cannot be: ${problems.join("; ")}.` : "";
+    $("message").hidden = problems.length === 0;
+    this.state = state;
+    this.compute();
+    this.draw();
+  },
+
+  // --- From the state to the page
+
+  show() {
+    this.computing = true;
+    this.soon();
+  },
+
+  // Once for all that happens before the next frame.
+  soon() {
+    if (this.waiting) return;
+    this.waiting = requestAnimationFrame(() => {
+      this.waiting = null;
+      if (this.computing) this.compute();
+      this.draw();
+    });
+  },
+
+  compute() {
+    this.computing = false;
+    const {width, height} = this.size, [a, b] = this.state.grid;
+    if (a * b > width * height) this.state.grid = [a, Math.max(1, Math.floor(width * height / a))];
+    const setting = settingOf(this.state);
+    if (this.state.pe !== null && this.state.pe >= setting.pes) this.state.pe = null;
+    if (this.hovered !== null && this.hovered >= setting.pes) this.hovered = null;
+    this.figures = figuresOf(setting, this.size, this.costs, this.rates);
+    this.texts = textsOf(this.figures);
+    for (const element of document.querySelectorAll("[data-figure]"))
+      element.textContent = this.texts[element.dataset.figure];
+    sync(this, document.activeElement);
+    this.keep();
+    clearTimeout(this.speaking);
+    this.speaking = setTimeout(() => {
+      const {u, speedup, efficiency} = this.texts;
+      $("spoken").textContent =
+        `${mappingText(this.state)} on ${setting.pes} PEs: u ${u}, speed-up ${speedup}, efficiency ${efficiency}`;
+    }, 600);
+    if (this.curves.pes !== setting.pes) this.trace(setting.pes);
+  },
+
+  // In the address, in the link, and as a command; not at every step of a drag, which browsers do not like.
+  keep() {
+    const link = linkText(this.state), before = location.hash;
+    $("link").setAttribute("href", link);
+    $("command").replaceChildren(...commandWords(`${str(this.report, "command")} ${optionsText(this.state)}`));
+    clearTimeout(this.keeping);
+    this.keeping = setTimeout(() => {
+      if (location.hash !== before) return;  // a link that is about to be followed
+      this.hash = link;
+      if (location.hash !== link) history.replaceState(null, "", link);
+    }, 250);
+  },
+
+  // The curves of this number of PEs, some offsets at a time, so that nothing else waits for them.
+  trace(pes) {
+    const {width} = this.size, values = {cyclic: new Float64Array(width)};
+    if (pes !== width) values.block = new Float64Array(width);
+    const own = this.curves = {pes, known: 0, values, best: null, worst: 0};
+    const more = () => {
+      if (own !== this.curves) return;  // another number of PEs by now
+      own.known = addToCurves(values, this.costs, this.size, pes, own.known, performance.now() + 10);
+      if (own.known < width) setTimeout(more);
+      else
+        this.traced();
+      this.soon();
+    };
+    setTimeout(more);
+  },
+
+  traced() {
+    const {curves} = this, {cyclic, block} = curves.values;
+    for (const [fold, us] of Object.entries(curves.values))
+      us.forEach((u, offset) => {
+        curves.worst = Math.max(curves.worst, u);
+        if (u < (curves.best?.u ?? Infinity)) curves.best = {fold, offset, u};
+      });
+    const rows = Array.from(cyclic, (u, p) => [String(p), fixed(u, 3), ...(block ? [fixed(block[p], 3)] : [])]);
+    $("offsets").replaceChildren(
+      $("offsets").firstElementChild,
+      wideTable("u of every offset", ["p", ...(block ? ["u, fold cyclic", "u, fold block"] : ["u"])], rows));
+  },
+
+  draw() {
+    if (!this.figures) return;
+    const {figures: f, state, curves, focus, texts} = this, {best, values} = curves, setting = mappingText(state);
+    drawPicture($("picture"), f, this, state.view, focus);
+    $("bars").replaceChildren(loadBars(f, texts, focus, 1 + curves.worst));
+    const here =
+      f.setting.kind === "slots" ? {offset: f.setting.offset, fold: values.block ? state.fold : "cyclic"} : null;
+    $("curves").replaceChildren(offsetCurves(f, texts, curves, this.root, here));
+    const {pe, cells} = drawCloseUp($("close-up"), f, this.size, focus),
+               close = `${cells} × ${cells} pixels of the middle of the picture, those of PE ${pe} in white`;
+    const owns = focus === null ?
+      "" :
+      `PE ${focus} owns ${grouped(f.sizes[focus])} pixels and has ${grouped(f.loads[focus])} cycles to do, ` +
+        `${f.mean > 0 ? fixed(f.loads[focus] / f.mean, 2) : 0} of the mean.`;
+    $("view-words").textContent = VIEW_WORDS[state.view](this.most);
+    $("pointed").textContent = this.hovered === null ? owns : `${this.pointed} ${owns}`;
+    $("picture").setAttribute(
+      "aria-label", `The picture, coloured by ${state.view}. ${setting} on ${f.setting.pes} PEs. ${owns}`);
+    $("close-up").setAttribute("aria-label", `${close}. Shortest vector: ${texts.vector}.`);
+    $("close-words").textContent = `The close-up shows ${close}. ` +
+      (f.vector ? `The arrow is the shortest vector of its lattice: ${texts.vector}.` : "Its pixels are no lattice.");
+    $("block-key").hidden = !values.block;
+    $("best").disabled = !best;
+    $("best-words").textContent = best ?
+      `Circle: the least, ${fixed(best.u, 3)} at p = ${best.offset}${values.block ? `, fold ${best.fold}` : ""}.` :
+                                                                                    "";
+    if (!best) return;
+    const own = (state.fold === "block" && values.block) || values.cyclic;  // of the fold that is chosen
+    $("best").dataset.offset = own.indexOf(own.reduce((a, u) => Math.min(a, u)));
+    $("best").textContent = `best here: p = ${$("best").dataset.offset}`;
+  },
+};
+
+function showExplorer(r) {
+  head(
+    "raya explore", "Who traces which pixel?",
+    make(
+      "p", {class: "lead"},
+      `${str(r, "scene")}, ${num(r, "image.width")} × ${
+        num(r, "image.height")} pixels, is shared out among processing elements (PEs) that have no ` +
+        "memory in common. A pixel whose rays bounce many times costs more than one of plain background; who owns which pixel decides how evenly the PEs are busy. Kohata & " +
+        "Ito’s ",
+      make("em", {}, "cyclic mapping"), " shifts every row by an offset ", make("var", {}, "p"),
+      " against the row above. Drag ", make("var", {}, "p"), ", and see."));
+  document.title = `raya explore: ${str(r, "scene")}`;
+  document.body.className = "explorer";
+  return explorer.start(r).then(
+    () => $("head").append(note(
+      `From one render: ${str(r, "machine.name")}, ${str(r, "machine.format")}, ${
+        num(r, "machine.bounces")} bounces, accelerator ${str(r, "machine.accel")}. ` +
+      `Everything here follows from the cycles that each pixel was counted to cost, ${
+        grouped(sum(explorer.costs))} in all.`)));
+}

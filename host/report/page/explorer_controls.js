@@ -1,0 +1,115 @@
+// From the explorer's controls and pointer to its state, and back.
+"use strict";
+
+// Controls and what they say of the state; both ways.
+const CONTROLS = {
+  mapping: ["mapping"],
+  offset: ["offset"],
+  "offset-slider": ["offset"],
+  pes: ["pes"],
+  "pes-slider": ["pes"],
+  "grid-a": ["grid", 0],
+  "grid-b": ["grid", 1],
+  "tile-w": ["tile", 0],
+  "tile-h": ["tile", 1],
+  seed: ["seed"],
+  pe: ["pe"]
+};
+
+function fillControls(page) {
+  const {width, height} = page.size, root = rootOf(width) % width;
+  const ends = {
+    "offset-slider": width - 1,
+    offset: width - 1,
+    "pes-slider": width,
+    pes: width * height,
+    "grid-a": height,
+    "grid-b": width
+  };
+  for (const [id, end] of Object.entries(ends)) $(id).max = end;
+  for (const [id, side] of [["tile-w", width], ["tile-h", height]])
+    $(id).append(...divisorsOf(side).map((d) => new Option(d, d)));
+  Object.assign($("picture"), page.size);
+  const tries = [
+    [`cyclic:0&pes=${width}&view=loads`, "The column split, by load", ": red columns where rays bounce."],
+    [
+      `cyclic:${root}&pes=${width}&view=loads`, "The paper’s choice, p = √P, by load",
+      ": the same cycles, spread over all."
+    ],
+    [`cyclic:${root}&pes=${width}&pe=0`, "One PE’s pixels", ": the lattice, over the whole picture."],
+    [`blocks&pes=${Math.min(width, height)}&view=loads`, "Contiguous blocks of lines", ": what one would do first."],
+    [
+      `random:1&pes=${width}`, "Every pixel drawn at random",
+      ": shares are even, and neighbours everywhere, so that raya refuses to filter there."
+    ]
+  ];
+  $("tries").append(
+    ...tries.map(([link, name, words]) => make("li", {}, make("a", {href: `#mapping=${link}`}, name), words)));
+}
+
+function listen(page) {
+  for (const [id, [name, which]] of Object.entries(CONTROLS))
+    $(id).addEventListener("input", ({target: {type, value}}) => {
+      if (id === "pe" && value === "") return page.pick(null);
+      if (type === "number" && (value === "" || !$(id).checkValidity())) return;
+      const taken = id === "mapping" ? value : Number(value);
+      page.state[name] = which === undefined ? taken : page.state[name].with(which, taken);
+      page.show();
+    });
+  $("no-pe").addEventListener("click", () => page.pick(null));
+  for (const radio of document.querySelectorAll("[name=view], [name=fold]"))
+    radio.addEventListener("change", () => page.choose(radio.name, radio.value));
+  for (const button of document.querySelectorAll("[data-offset], #root, #best"))
+    button.addEventListener("click", () => page.choose("offset", Number(button.dataset.offset)));
+  for (const field of document.querySelectorAll("input[type=number]"))  // what cannot be is not left there
+    field.addEventListener("change", () => sync(page, null));
+  $("form").addEventListener("submit", (event) => event.preventDefault());
+  addEventListener("hashchange", () => page.follow());
+}
+
+// On picture, bars and curves.
+function listenToPointer(page) {
+  const share = (id, {clientX, clientY}) => {
+    const {left, top, width, height} = $(id).getBoundingClientRect();
+    return [(clientX - left) / width, (clientY - top) / height];
+  };
+  const inside = (value, end) => Math.min(Math.max(Math.floor(value), 0), end - 1);
+  const along = (id, event) => (share(id, event)[0] * WIDE - LEFT) / (RIGHT - LEFT);
+  const over = (id, owner) => {
+    $(id).addEventListener("pointermove", (event) => page.hover(...owner(event)));
+    $(id).addEventListener("pointerleave", () => page.hover(null));
+    $(id).addEventListener("click", (event) => page.pick(owner(event)[0]));
+  };
+  over("picture", (event) => {
+    const [x, y] = share("picture", event), {width, height} = page.size;
+    const row = inside(y * height, height), column = inside(x * width, width), at = row * width + column;
+    return [page.figures.owners[at], `Row ${row}, column ${column}: ${grouped(page.costs[at])} cycles.`];
+  });
+  over("bars", (event) => [inside(along("bars", event) * page.figures.setting.pes, page.figures.setting.pes), ""]);
+  const drag = (event) => {
+    page.state.mapping = "cyclic";
+    page.choose("offset", inside(along("curves", event) * (page.size.width - 1) + 0.5, page.size.width));
+  };
+  $("curves").addEventListener("pointerdown", (event) => {
+    $("curves").setPointerCapture(event.pointerId);
+    drag(event);
+  });
+  $("curves").addEventListener("pointermove", (event) => event.buttons & 1 && drag(event));
+}
+
+// All controls say what the state is; not the field that is being written in.
+function sync(page, active) {
+  const {state, size: {width}} = page, pes = settingOf(state).pes;
+  for (const [id, [name, which]] of Object.entries(CONTROLS))
+    if ($(id) !== active || active.type !== "number")
+      $(id).value = (which === undefined ? state[name] : state[name][which]) ?? "";
+  $("pe").max = pes - 1;
+  for (const radio of document.querySelectorAll("[name=view], [name=fold]"))
+    radio.checked = radio.value === state[radio.name];
+  for (const part of document.querySelectorAll("[data-for]"))
+    part.hidden = !part.dataset.for.split(" ").includes(state.mapping);
+  const root = rootOf(pes);
+  $("root").textContent = `p = √P ${root ** 2 === pes ? "=" : "≈"} ${root}`;
+  $("root").dataset.offset = root % width;
+  $("root").hidden = root >= width;
+}

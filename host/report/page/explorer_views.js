@@ -1,0 +1,114 @@
+// What the explorer shows of a setting: the picture, its close-up, the bars of the loads and the curves. Knows the
+// figures of model.js, and no control.
+"use strict";
+
+const HUES = 360, LEVELS = 64;
+const colours = (count, colour) => Uint32Array.from(
+  {length: count * LEVELS},
+  (_, i) => wordOf(colour(Math.floor(i / LEVELS) / (count - 1), (i % LEVELS) / (LEVELS - 1))));
+const OWNERS =
+  colours(HUES, (turn, level) => rgbOf(0.2 + 0.7 * level, 0.04 + 0.055 * Math.sin(Math.PI * level), turn * 359));
+const LOADS = colours(129, (t, level) => rgbOf(0.22 + 0.66 * level, 0.19 * Math.abs(2 * t - 1), t < 0.5 ? 255 : 29));
+const COSTS = colours(256, (t) => rgbOf(0.17 + 0.79 * t, 0.04 + 0.22 * t * (1.25 - t), 295 + 160 * t));
+
+const VIEW_WORDS = {
+  owners: () => "Hue: the number of the PE that owns the pixel.",
+  loads: () =>
+    "Red: the pixel's PE has more to do than the mean, blue: less. Full colour at twice the mean, and at nothing.",
+  costs: (most) => `The brighter, the more cycles a pixel costs; the most expensive takes ${grouped(most)}.`,
+  picture: () => "What the machine has rendered.",
+};
+
+// `levels`: 0..63 for each pixel, how light it is. `focus`: a PE, whose pixels are white and all others dim, or null.
+function drawPicture(canvas, f, {levels, costs, most, photo}, view, focus) {
+  const {owners, loads, mean, setting: {pes}} = f, shown = new Uint32Array(photo.data.buffer.slice(0));
+  const level = (pe) => view === "owners" ? Math.floor(hueOf(pe, pes)) :
+                                            Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)));
+  const row = Int32Array.from({length: pes}, (_, pe) => LEVELS * level(pe)),
+        palette = view === "owners" ? OWNERS : LOADS;
+  const third = (word, shift) => (word >>> shift & 255) / 3 << shift;
+  for (let i = 0; i < shown.length; ++i) {
+    if (view === "costs") shown[i] = COSTS[Math.round(255 * Math.sqrt(most > 0 ? costs[i] / most : 0)) * LEVELS];
+    else if (view !== "picture")
+      shown[i] = palette[row[owners[i]] + levels[i]];
+    if (focus === null) continue;
+    shown[i] = owners[i] === focus ? 0xffffffff :
+                                     (0xff000000 | third(shown[i], 16) | third(shown[i], 8) | third(shown[i], 0)) >>> 0;
+  }
+  canvas.getContext("2d").putImageData(
+    new ImageData(new Uint8ClampedArray(shown.buffer), photo.width, photo.height), 0, 0);
+}
+
+// Loads in parts of the mean, each in its PE's colour. `most`: of all offsets.
+function loadBars(f, texts, focus, most) {
+  const {mean, setting: {pes}} = f,
+                        words = `Loads of ${pes} PEs: from ${texts.idlest} to ${texts.busiest}, mean ${texts.mean}.`;
+  return bars(
+    words, ["PE", "load, in parts of the mean"], Array.from(f.loads, (load) => mean > 0 ? load / mean : 0), 1, {
+      top: Math.max(most, 1.2),
+      colour: (from, count) => focus >= from && focus < from + count && focus !== null ?
+        "var(--ink)" :
+        bright(from, pes, 0.69, focus === null ? 1 : 0.45)
+    });
+}
+
+// u over all offsets, as far as they are known. `here`: the offset and fold, or null.
+function offsetCurves(f, texts, {values, known, best}, root, here) {
+  const side = values.cyclic.length, last = Math.max(side - 1, 1), folds = Object.entries(values);
+  const most = folds.reduce(
+    (top, [, us]) => us.subarray(0, known).reduce((a, u) => Math.max(a, u), top), Math.max(f.imbalance, 1e-3));
+  const {x, y, grid} = plane(linear("offset p", last, 5, true), linear("u", 1.06 * most, 4));
+  const curve = ([fold, us]) => line(
+    `curve ${fold}${here && here.fold !== fold ? " dim" : ""}`,
+    ...Array.from(us.subarray(0, known), (u, p) => [x(p), y(u)]));
+  const least = best ? `least ${fixed(best.u, 3)} at p = ${best.offset}, fold ${best.fold}` : "not all computed yet";
+  return chart(`u of the offsets 0 to ${side - 1}, now ${texts.u}; ${least}.`, [
+    grid, root < side ? [line("root", [x(root), TOP], [x(root), BOTTOM])] : [], known > 0 ? folds.map(curve) : [],
+    best ? [dot(x(best.offset), y(best.u), 4, "ring")] : [],
+    here ?
+      [line("mark", [x(here.offset), TOP], [x(here.offset), BOTTOM]), dot(x(here.offset), y(f.imbalance), 5, "here")] :
+      [line("mark", [LEFT, y(f.imbalance)], [RIGHT, y(f.imbalance)])]
+  ]);
+}
+
+// The middle of the picture, large: who owns what, one PE's pixels marked, and its shortest vector.
+function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
+  const context = canvas.getContext("2d"), {owners, vector, setting: {pes}} = f,
+        reach = vector ? Math.ceil(Math.hypot(...vector)) : 12;
+  const cells = Math.min(Math.max(2 * reach + 5, 17), 71, across, down), cell = canvas.width / cells,
+        middle = Math.floor(cells / 2);
+  const row0 = Math.floor((down - cells) / 2), column0 = Math.floor((across - cells) / 2);
+  const ownerAt = (row, column) => owners[(row0 + row) * across + column0 + column],
+        own = focus ?? ownerAt(middle, middle);
+  let from = null;  // the pixel of that PE that is nearest to the middle
+  for (let row = 0; row < cells; ++row)
+    for (let column = 0; column < cells; ++column) {
+      const pe = ownerAt(row, column), away = Math.hypot(row - middle, column - middle);
+      context.fillStyle = bright(pe, pes, pe === own ? 0.8 : 0.5 + 0.06 * (pe & 1));
+      context.fillRect(column * cell, row * cell, cell + 0.5, cell + 0.5);
+      if (pe !== own) continue;
+      context.fillStyle = "#ffffff";
+      context.fillRect((column + 0.12) * cell, (row + 0.12) * cell, 0.76 * cell, 0.76 * cell);
+      if (from === null || away < from.away) from = {row, column, away};
+    }
+  if (vector && from)
+    drawArrow(context, (from.column + 0.5) * cell, (from.row + 0.5) * cell, vector[1] * cell, vector[0] * cell);
+  return {pe: own, cells};
+}
+
+function drawArrow(context, x, y, dx, dy) {
+  const length = Math.hypot(dx, dy), tip = Math.min(13, length / 2), [ux, uy] = [dx / length, dy / length];
+  context.lineCap = context.lineJoin = "round";
+  for (const [colour, wide] of [["#000000", 7], ["#ffd84d", 3.5]]) {
+    context.strokeStyle = colour;
+    context.lineWidth = wide;
+    context.beginPath();
+    context.moveTo(x, y);
+    context.lineTo(x + dx, y + dy);
+    for (const turn of [1, -1]) {
+      context.moveTo(x + dx, y + dy);
+      context.lineTo(x + dx - tip * (ux - turn * 0.6 * uy), y + dy - tip * (uy + turn * 0.6 * ux));
+    }
+    context.stroke();
+  }
+}

@@ -1,0 +1,264 @@
+// The model behind the page: owners, loads and figures of a setting, as the program computes them (kernels/shared/
+// mapping.h, host/ring/route.cpp, host/model/), to the last digit; tests/tools/test_explore.py compares them.
+// Whole numbers below 2^53 are exact in JavaScript; products of 32 bits go through Math.imul. Knows nothing of the
+// page.
+//
+// A setting: {kind, offset, fold, pes, a, b, seed}; kind: slots, rows, blocks, grid, tiles or random; a, b: rows and
+// columns of a grid, or width and height of a tile.
+"use strict";
+
+// --- Who owns a pixel
+
+// floor(n / d) of whole numbers, n < 2^53: the quotient lies at least 1 / d below the next whole number, which is more
+// than what a double rounds it by.
+const floorRatio = (n, d) => Math.floor(n / d);
+const stepsBelow = (first, step, end) => first < end ? floorRatio(end - first - 1, step) + 1 : 0;
+
+// (row, slot) -> PE of the slot mappings.
+function slotOwner({fold, pes}, {width, height}) {
+  if (fold === "cyclic")
+    return pes <= width ? (row, slot) => slot % pes :
+                          (row, slot) => slot + width * (row % stepsBelow(slot, width, pes));
+  if (pes <= width) return (row, slot) => floorRatio(slot * pes, width);
+  return (row, slot) => {
+    const first = floorRatio(slot * pes, width), sharers = floorRatio((slot + 1) * pes, width) - first;
+    return first + floorRatio(row * sharers, height);
+  };
+}
+
+// The finaliser of MurmurHash3 (A. Appleby, public domain).
+function mixed(x) {
+  x = Math.imul(x ^ x >>> 16, 0x85ebca6b);
+  x = Math.imul(x ^ x >>> 13, 0xc2b2ae35);
+  return (x ^ x >>> 16) >>> 0;
+}
+
+// number -> number: the bijection of 0 .. count - 1 of kernels/shared/scramble.h, a Feistel network of six rounds.
+function scrambler(count, seed) {
+  let bits = 0;
+  while (2 ** bits < count) ++bits;
+  const low = bits - (bits >> 1), lowMask = 2 ** low - 1, highMask = 2 ** (bits >> 1) - 1;
+  const keys = [1, 2, 3, 4, 5, 6].map((round) => mixed(seed + Math.imul(round, 0x9e3779b9) | 0));
+  return (number) => {
+    do {
+      for (let round = 0; round < 6; ++round)
+        if (round & 1) number = (number ^ (mixed(keys[round] ^ number >>> low) & lowMask)) >>> 0;
+        else
+          number = (number ^ (mixed(keys[round] ^ (number & lowMask)) & highMask) << low) >>> 0;
+    } while (number >= count);
+    return number;
+  };
+}
+
+// (row, column) -> PE of what is no slot mapping.
+function plainOwner({kind, pes, a, b, seed}, {width, height}) {
+  if (kind === "rows") return (row) => row % pes;
+  if (kind === "blocks") return (row) => floorRatio(row * pes, height);
+  if (kind === "grid") return (row, column) => row % a * b + column % b;
+  if (kind === "tiles")
+    return (row, column) => (floorRatio(row, b) * floorRatio(width, a) + floorRatio(column, a)) % pes;
+  const scrambled = scrambler(width * height, seed);
+  return (row, column) => scrambled(row * width + column) % pes;
+}
+
+// The PE of each pixel, row by row.
+function ownersOf(setting, size) {
+  const {width, height} = size, owners = new Int32Array(width * height);
+  const slots = setting.kind === "slots", owner = slots ? slotOwner(setting, size) : plainOwner(setting, size);
+  for (let row = 0, at = 0; row < height; ++row) {
+    let slot = slots ? (width - row * setting.offset % width) % width : 0;
+    for (let column = 0; column < width; ++column, ++at) {
+      owners[at] = owner(row, slot);
+      if (++slot === width) slot = 0;
+    }
+  }
+  return owners;
+}
+
+// --- Loads
+
+function loadsOf(owners, costs, pes) {
+  const loads = new Float64Array(pes);
+  for (let at = 0; at < owners.length; ++at) loads[owners[at]] += costs[at];
+  return loads;
+}
+
+// host/model/time_model.cpp, in the same order of operations.
+function balanceOf(loads) {
+  const pes = loads.length;
+  let sum = 0, busiest = 0, idlest = 0;
+  for (let pe = 0; pe < pes; ++pe) {
+    sum += loads[pe];
+    if (loads[pe] > loads[busiest]) busiest = pe;
+    if (loads[pe] < loads[idlest]) idlest = pe;
+  }
+  const max = loads[busiest], mean = sum / pes, speedup = sum > 0 ? sum / max : pes;
+  return {
+    sum,
+    max,
+    mean,
+    busiest,
+    idlest,
+    imbalance: sum > 0 ? (max - mean) / mean : 0,
+    speedup,
+    efficiency: speedup / pes
+  };
+}
+
+// Fills curves.cyclic and curves.block, where they are asked for, with u of the offsets from `first` on until the time
+// is over; the next offset.
+function addToCurves(curves, costs, size, pes, first, deadline) {
+  const {width, height} = size, folds = Object.keys(curves);
+  const owner = folds.map((fold) => slotOwner({fold, pes}, size));
+  const loads = new Float64Array(pes), slots = new Float64Array(width);
+  let offset = first;
+  for (; offset < width && performance.now() < deadline; ++offset) {
+    // With no more PEs than slots each has whole ones; their loads serve both folds.
+    if (pes <= width) {
+      slots.fill(0);
+      for (let row = 0, begin = 0, at = 0; row < height; ++row, at += width) {
+        for (let slot = 0, column = begin; slot < width; ++slot, ++column)
+          slots[slot] += costs[at + (column < width ? column : column - width)];
+        begin = (begin + offset) % width;
+      }
+    }
+    folds.forEach((fold, which) => {
+      loads.fill(0);
+      if (pes <= width)
+        for (let slot = 0; slot < width; ++slot) loads[owner[which](0, slot)] += slots[slot];
+      else
+        for (let row = 0, at = 0; row < height; ++row)
+          for (let column = 0, slot = (width - row * offset % width) % width; column < width; ++column, ++at) {
+            loads[owner[which](row, slot)] += costs[at];
+            if (++slot === width) slot = 0;
+          }
+      curves[fold][offset] = balanceOf(loads).imbalance;
+    });
+  }
+  return offset;
+}
+
+// --- Neighbours
+
+// found[d] for left, right, above, below: whether the neighbour of some pixel of some PE i is on PE i + d, modulo P.
+function distancesOf(owners, {width, height}, pes) {
+  const [left, right, above, below] = [0, 1, 2, 3].map(() => new Uint8Array(pes));
+  const away = (from, to) => from >= to ? from - to : from + pes - to;
+  for (let row = 0, at = 0; row < height; ++row)
+    for (let column = 0; column < width; ++column, ++at) {
+      const own = owners[at];
+      if (column > 0) left[away(owners[at - 1], own)] = right[away(own, owners[at - 1])] = 1;
+      if (row > 0) above[away(owners[at - width], own)] = below[away(own, owners[at - width])] = 1;
+    }
+  return [left, right, above, below];
+}
+
+// The fewest turns of the ring past all distances: the nearer ones one way, the others the other way.
+function turnsOf(found) {
+  const pes = found.length, distances = [];
+  for (let d = 0; d < pes; ++d)
+    if (found[d]) distances.push(d);
+  if (distances.length === 0) return 0;
+  let fewest = Infinity;
+  for (let n = 0; n <= distances.length; ++n)
+    fewest = Math.min(fewest, (n ? distances[n - 1] : 0) + (n < distances.length ? pes - distances[n] : 0));
+  return fewest;
+}
+
+// What the 3 x 3 filter moves: rotations of the ring, or transfers or broadcasts over the bus.
+function movesOf(owners, size, pes) {
+  const moves = {rotations: 0, transfers: 0, broadcasts: 0};
+  for (const found of distancesOf(owners, size, pes)) {
+    let distant = 0;
+    for (let d = 1; d < pes; ++d) distant += found[d];
+    moves.rotations += turnsOf(found);
+    moves.transfers += distant * pes;
+    moves.broadcasts += distant > 0 ? pes : 0;
+  }
+  return moves;
+}
+
+// --- Lattices
+
+// A shortest vector of the lattice of {(a, b): b = a p mod N}: [rows down, columns to the right].
+function shortestVector(offset, side) {
+  let least = [0, side], square = side * side;
+  for (let rows = 1; rows * rows < square; ++rows) {
+    const right = rows * offset % side, columns = right <= side - right ? right : right - side;
+    if (rows * rows + columns * columns < square) [least, square] = [[rows, columns], rows * rows + columns * columns];
+  }
+  return least;
+}
+
+// null where the pixels of a PE are no lattice.
+function vectorOf({kind, fold, offset, pes, a, b}, {width}) {
+  if (kind === "slots" && (fold === "cyclic" ? width % pes === 0 : width === pes))
+    return shortestVector(offset % pes, pes);
+  if (kind === "rows") return [0, 1];
+  if (kind === "grid") return b <= a ? [0, b] : [a, 0];
+  return null;
+}
+
+// --- All of a setting
+
+function figuresOf(setting, size, costs, rates) {
+  const owners = ownersOf(setting, size), loads = loadsOf(owners, costs, setting.pes),
+        sizes = new Int32Array(setting.pes);
+  for (const pe of owners) ++sizes[pe];
+  const share = sizes.reduce((most, pixels) => Math.max(most, pixels), 0);
+  const balance = balanceOf(loads), moves = movesOf(owners, size, setting.pes);
+  const figures =
+    {setting, owners, loads, sizes, share, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
+  if (rates) {  // host/model/time_model.cpp
+    const words = moves.rotations * setting.pes * 3 * share;
+    figures.time = {
+      compute: 1e-6 * rates.cycle_ns * balance.max,
+      rotations: moves.rotations * rates.rotation_sync_ms + 1e3 * words / rates.link_words_per_s / setting.pes
+    };
+  }
+  return figures;
+}
+
+// --- As text
+
+// So many digits behind the point, as the program prints them: what lies just between two goes to the even one, where
+// toFixed() goes up. A hundred digits are all that a double of a usual size has.
+function fixed(value, digits) {
+  const all = value.toFixed(100), point = all.indexOf("."), cut = point + 1 + digits;
+  if (!/^50*$/.test(all.slice(cut))) return value.toFixed(digits);
+  const down = all.slice(0, digits ? cut : point);
+  return Number(down.at(-1)) % 2 === 0 ? down : value.toFixed(digits);
+}
+
+// A narrow blank between thousands.
+const grouped = (number) => String(number).replace(/\B(?=(\d{3})+(\.|$))(?<!\.\d*)/g, "\u202f");
+
+// host/model/unit_text.cpp
+function timeText(ms) {
+  const units = [[1e4, 1, "ms"], [6e5, 1e3, "s"], [3.6e7, 6e4, "min"], [Infinity, 3.6e6, "h"]];
+  const [, unit, name] = units.find(([below]) => ms < below);
+  return `${fixed(ms / unit, 1)} ${name}`;
+}
+
+function vectorText(vector) {
+  if (!vector) return "no lattice";
+  const [rows, columns] = vector;
+  const across = columns === 0 ? "" : `, ${Math.abs(columns)} ${columns > 0 ? "right" : "left"}`;
+  return `${fixed(Math.sqrt(rows * rows + columns * columns), 2)} pixels (${rows} down${across})`;
+}
+
+function textsOf(f) {
+  return {
+    u: fixed(f.imbalance, 3),
+    speedup: `${fixed(f.speedup, 1)} of ${f.setting.pes}`,
+    efficiency: `${fixed(100 * f.efficiency, 1)} %`,
+    busiest: `${grouped(f.max)} cycles (PE ${f.busiest})`,
+    mean: `${grouped(fixed(f.mean, 1))} cycles`,
+    idlest: `${grouped(f.loads[f.idlest])} cycles (PE ${f.idlest})`,
+    vector: vectorText(f.vector),
+    rotations: `${grouped(f.rotations)} rotations of ${grouped(3 * f.share)} words`,
+    bus: `${grouped(f.transfers)} transfers or ${grouped(f.broadcasts)} broadcasts`,
+    time: f.time ? `${timeText(f.time.compute)} to trace, ${timeText(f.time.rotations)} to rotate` :
+                   "not known of this machine",
+  };
+}

@@ -1,0 +1,155 @@
+// What pages are made of: members of a report, elements, tables. A report's text becomes text of the page through
+// text nodes and attributes without a meaning of their own, and never through HTML.
+"use strict";
+
+const $ = (id) => document.getElementById(id);
+
+// --- Members of a report, by paths such as "load.mean"; an error names the one that is missing or of another type.
+
+const TYPES = {
+  number: (value) => typeof value === "number",
+  "whole number": (value) => Number.isSafeInteger(value) && value > 0,
+  text: (value) => typeof value === "string",
+  list: Array.isArray,
+  object: (value) => value !== null && typeof value === "object" && !Array.isArray(value),
+};
+
+function find(object, path) {
+  return path.split(".").reduce(
+    (value, name) => TYPES.object(value) && Object.hasOwn(value, name) ? value[name] ?? undefined : undefined, object);
+}
+
+const has = (object, path) => find(object, path) !== undefined;
+
+function member(object, path, type) {
+  const value = find(object, path);
+  if (value === undefined) throw new Error(`${path} is missing`);
+  if (!TYPES[type](value)) throw new Error(`${path} is not a ${type}`);
+  return value;
+}
+
+const num = (object, path) => member(object, path, "number");
+const whole = (object, path) => member(object, path, "whole number");  // 1 or more
+const str = (object, path) => member(object, path, "text");
+const list = (object, path, type) => member(object, path, "list").map((value, i) => {
+  if (!TYPES[type](value)) throw new Error(`${path}[${i}] is not a ${type}`);
+  return value;
+});
+
+// --- Elements
+
+// Children: elements, text, lists of these; null and false are left out.
+function make(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...children.flat(Infinity).filter((child) => child !== null && child !== false));
+  return made;
+}
+
+// A sentence: `code` in backticks, +- as one sign.
+const prose = (text) => text.replaceAll("+-", "±").split("`").map(
+  (part, i, parts) => i % 2 && i < parts.length - 1 ? make("code", {}, part) :
+    i % 2                                           ? "`" + part :
+                                                      part);
+
+const paragraph = (...children) => make("p", {}, ...children);
+const note = (...children) => make("p", {class: "note"}, ...children);
+const message = (text) => make("p", {class: "message"}, prose(text));
+const code = (text) => make("code", {}, text);
+const part = (title, ...children) => children.flat().length ? [make("h3", {}, prose(title)), ...children] : [];
+
+// [name, text or element] of those that have one.
+const definitions = (rows, attributes = {}) => make(
+  "dl", attributes,
+  rows.filter(([, what]) => what !== "").map(([name, what]) => [make("dt", {}, name), make("dd", {}, what)]));
+const tiles = (rows) => make(
+  "dl", {class: "chief"},
+  rows.filter(([, what]) => what !== "").map(([name,
+                                               what]) => make("div", {}, make("dt", {}, name), make("dd", {}, what))));
+
+// kind: yes, no or open.
+const verdict = (kind, text) => make("span", {class: `verdict ${kind}`}, text);
+
+// --- Tables. Cells: text, numbers as text, or elements. Columns of numbers are set and sorted as such, a long table
+// is folded away.
+
+const OPEN_ROWS = 24, MOST_ROWS = 400;
+const NUMBER = /^(-|[-+]?(inf|[\d.,\u202f]+(e[-+]?\d+)?)( (%|ms|s|min|h))?)?$/;
+
+function wideTable(label, header, rows) {
+  const classOf = (texts) => texts.every((text) => NUMBER.test(text)) && texts.some((text) => /\d/.test(text)) ? "n" :
+    texts.some((text) => text.length > 60)                                                                     ? "w" :
+                                                                                                                 "";
+  const classes = header.map((_, column) => classOf(rows.map((row) => row[column].textContent ?? row[column])));
+  const heads = header.map(
+    (text, column) => make("th", {scope: "col", class: classes[column]}, make("button", {type: "button"}, text)));
+  const body = make(
+    "tbody", {},
+    rows.map(
+      (row) => make(
+        "tr", {},
+        row.map(
+          (cell, column) => make("td", {class: classes[column]}, typeof cell === "string" ? prose(cell) : cell)))));
+  heads.forEach((head, column) => head.firstChild.addEventListener("click", () => sortBy(head, column, body)));
+  return make(
+    "div", {class: "wide", tabindex: 0, role: "region", "aria-label": label},
+    make("table", {"aria-label": label}, make("thead", {}, make("tr", {}, heads)), body));
+}
+
+function table(label, header, rows, rest = "All rows are in the report.") {
+  if (rows.length === 0) return [];
+  const whole = wideTable(label, header, rows.slice(0, MOST_ROWS));
+  if (rows.length <= OPEN_ROWS) return [whole];
+  const cut = rows.length > MOST_ROWS && note(...prose(`The first ${MOST_ROWS} of ${rows.length} rows. ${rest}`));
+  return [make("details", {}, make("summary", {}, `${rows.length} rows`), whole, cut)];
+}
+
+// Numbers by size, empty cells last; a second click turns the order round.
+function sortBy(head, column, body) {
+  const sign = head.getAttribute("aria-sort") === "ascending" ? -1 : 1, numeric = head.className === "n";
+  const key = (row) => {
+    const text = row.cells[column].textContent;
+    if (!numeric) return text;
+    const number = Number.parseFloat(text.replaceAll("\u202f", "").replace(/^([-+]?)inf/, "$1Infinity"));
+    return Number.isNaN(number) ? Infinity * sign : number;
+  };
+  const keyed = [...body.rows].map((row) => [key(row), row]);
+  keyed.sort(([a], [b]) => a === b ? 0 : sign * (numeric ? a - b : a.localeCompare(b)));
+  body.append(...keyed.map(([, row]) => row));
+  for (const other of head.parentElement.cells) other.removeAttribute("aria-sort");
+  head.setAttribute("aria-sort", sign > 0 ? "ascending" : "descending");
+}
+
+// --- The page itself
+
+const caption = (element, ...words) => make(
+  "figure", {}, element, make("figcaption", {}, words.map((text) => typeof text === "string" ? prose(text) : text)));
+
+// A section with its link in the contents. Where a member is missing, the section says which.
+function section(id, title, build) {
+  let children;
+  try {
+    children = build();
+  } catch (problem) {
+    children = [message(`This part cannot be shown: ${problem.message}.`)];
+  }
+  if (children === null) return;
+  $("main").append(make("section", {id}, make("h2", {}, title), ...children));
+  const nav = document.querySelector("nav");
+  if (!nav.firstChild) nav.append(make("ul"));
+  nav.firstChild.append(make("li", {}, make("a", {href: `#${id}`}, title)));
+}
+
+// What is above the sections; where a member is missing, they follow all the same.
+function heading(build) {
+  try {
+    build();
+  } catch (problem) {
+    $("head").append(message(`The head of this report cannot be shown: ${problem.message}.`));
+  }
+}
+
+function head(kicker, title, ...lead) {
+  document.title = `${kicker}: ${title}`;
+  $("head").append(...make("div", {}, make("p", {class: "kicker"}, kicker), make("h1", {}, title), lead).childNodes);
+}

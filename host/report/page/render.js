@@ -1,0 +1,246 @@
+// The page of a report of `raya render`.
+"use strict";
+
+const percent = (share, digits = 1) => `${fixed(100 * share, digits)} %`;
+const sum = (values) => values.reduce((a, b) => a + b, 0);
+const titled = (name) => name.replaceAll("_", " ");
+const kilobytes = (bytes) => bytes < 1024 ? `${bytes} bytes` : `${fixed(bytes / 1024, 1)} KB`;
+const msText = (ms) => ms > 0 && ms < 1 ? `${fixed(ms, 3)} ms` : timeText(ms);
+const count = (object, path) => grouped(num(object, path));
+const RED_AND_BLUE = "Red has more than the mean, blue less; the fullest colour is what lies farthest from it.";
+
+function rateText(rays) {
+  const [unit, name] = rays >= 1e6 ? [1e6, "Mrays/s"] : rays >= 1e3 ? [1e3, "krays/s"] : [1, "rays/s"];
+  return `${fixed(rays / unit, 1)} ${name}`;
+}
+
+// A picture in the report itself.
+function picture(r, path, words) {
+  const png = str(r, path);
+  if (!/^iVBORw0KGgo[\w+/]*=*$/.test(png)) throw new Error(`${path} is not a PNG file in base64`);
+  return make("img", {class: "picture", alt: words, src: "data:image/png;base64," + png});
+}
+
+// --- Its head
+
+function renderHead(r) {
+  const torus = has(r, "torus"), machine = member(r, "machine", "object"), seconds = num(r, "measured.render_s");
+  const rays = sum(["primary", "reflected", "refracted", "shadow"].map((kind) => num(r, `rays.${kind}`)));
+  const where = torus ? `${num(machine, "pes")} nodes, ${str(machine, "topology")}` :
+                        `${num(machine, "pes")} PEs, ${str(machine, "mapping")} mapping` +
+      (has(machine, "offset") ? `, offset ${num(machine, "offset")}, fold ${str(machine, "fold")}` : "");
+  const whole = torus ? "modelled_ms.stepwise" : "modelled_ms.total";
+  head(
+    "raya render", str(r, "scene"),
+    paragraph(
+      `${num(r, "image.width")} × ${num(r, "image.height")} pixels on ${str(machine, "name")} (${where}), ` +
+      `${str(machine, "format")}, ${num(machine, "bounces")} bounces.`),
+    tiles([
+      ["imbalance u", fixed(num(r, "load.imbalance"), 3)],
+      ["speed-up", `${fixed(num(r, "load.speedup"), 1)} of ${num(machine, "pes")}`],
+      ["efficiency", percent(num(r, "load.efficiency"))], ["rays", grouped(rays)],
+      [torus ? "modelled, step by step" : "modelled time", has(r, whole) ? timeText(num(r, whole)) : ""],
+      ["measured", timeText(1e3 * seconds)], ["measured rate", rateText(rays / seconds)]
+    ]),
+    list(r, "warnings", "text").map(message));
+}
+
+// --- Its picture, and who owns which pixel or voxel
+
+const range = (r) => !(num(r, "load.mean") > 0) ?
+  "all 0" :
+  `from ${percent(1 - num(r, "load.min") / num(r, "load.mean"))} below to ${
+    percent(num(r, "load.max") / num(r, "load.mean") - 1)} above the mean`;
+
+// At most 256 cells a side, each the mean load of the pixels that it stands for; and the upper left pixels by owner.
+function ownerMaps(r, size) {
+  const {width, height} = size, machine = member(r, "machine", "object"), setting = settingOf(stateOf(machine, size));
+  const loads = list(r, "load.per_pe", "number"), owners = ownersOf(setting, size), colour = diverging(loads);
+  const shrink = Math.max(1, Math.max(width, height) / 256), w = Math.max(1, Math.round(width / shrink)),
+        h = Math.max(1, Math.round(height / shrink));
+  if (loads.length !== setting.pes) throw new Error("load.per_pe has another length than machine.pes says");
+  const mean = (row, column) => {
+    const [top, bottom, left, right] =
+      [row * height / h, (row + 1) * height / h, column * width / w, (column + 1) * width / w].map(Math.floor);
+    let all = 0;
+    for (let y = top; y < bottom; ++y)
+      for (let x = left; x < right; ++x) all += loads[owners[y * width + x]];
+    return colour(all / ((bottom - top) * (right - left)));
+  };
+  const side = [Math.min(width, 48), Math.min(height, 48)], mapping = mappingText(stateOf(machine, size));
+  const hues = Uint32Array.from({length: setting.pes}, (_, pe) => wordOf(rgbOf(0.72, 0.14, hueOf(pe, setting.pes))));
+  return [
+    caption(
+      pixelMap(w, h, `A map of the picture: each pixel in the colour of its PE's load, ${range(r)}`, mean),
+      `Each pixel by the load of its PE, ${range(r)}. ${RED_AND_BLUE}`),
+    caption(
+      pixelMap(
+        ...side, `A close-up of which PE owns which pixel, mapping ${mapping}`,
+        (row, column) => hues[owners[row * width + column]]),
+      `Owners of the upper left ${side.join(" × ")} pixels: hue is the number of the PE, of ${setting.pes}; mapping ${
+        mapping}.`)
+  ];
+}
+
+// The number of node (i, j, k) of kernels/shared/torus.h; on a 2-D torus slabs of equal k lie beside one another.
+function nodeNumbers([I, J, K], flat) {
+  let slabs = 1;
+  const apart = (c) => Math.abs(I * c - J * (K / c));
+  for (let c = 2; c <= K; ++c)
+    if (K % c === 0 && apart(c) < apart(slabs)) slabs = c;
+  return flat ? (i, j, k) => i + I * (k % slabs) + I * slabs * (j + J * floorRatio(k, slabs)) :
+                (i, j, k) => i + I * (j + J * k);
+}
+
+// One cell for each node: slices of equal z beside and below one another, x to the right, y down.
+function nodeMap(r, values, words) {
+  const nodes = list(r, "torus.nodes", "number"), [I, J, K] = nodes, beside = Math.ceil(Math.sqrt(K));
+  if (nodes.length !== 3 || I * J * K !== values.length)
+    throw new Error("a list by nodes has another length than there are nodes");
+  const number = nodeNumbers(nodes, str(r, "torus.links") === "torus2d"), colour = diverging(values);
+  return pixelMap(beside * (I + 1) - 1, Math.ceil(K / beside) * (J + 1) - 1, words, (y, x) => {
+    const k = floorRatio(y, J + 1) * beside + floorRatio(x, I + 1), i = x % (I + 1), j = y % (J + 1);
+    return i < I && j < J && k < K ? colour(values[number(i, j, k)]) : wordOf(rgbOf(0.45, 0, 0));
+  });
+}
+
+function nodeMaps(r) {
+  const nodes = `${list(r, "torus.nodes", "number").join(" × ")} nodes`;
+  return [
+    ["load.per_pe", `The load of each of ${nodes}, slices of equal z beside one another, ${range(r)}.`],
+    ["torus.bytes_per_link.sent_by_node", `Bytes that each of ${nodes} sends over its links.`]
+  ].map(([path, words]) => caption(nodeMap(r, list(r, path, "number"), words), `${words} ${RED_AND_BLUE}`));
+}
+
+function pictures(r) {
+  const size = {width: whole(r, "image.width"), height: whole(r, "image.height")}, shown = [];
+  const pixels = `${size.width} × ${size.height} pixels`, small = num(r, "image.preview.width");
+  shown.push(caption(
+    picture(r, "image.preview.png", `The rendered picture of ${str(r, "scene")}, ${pixels}`),
+    `${str(r, "image.file")}, ${pixels}${
+      small < size.width ? `; here ${small} × ${num(r, "image.preview.height")}` : ""}.`));
+  if (has(r, "torus")) shown.push(...nodeMaps(r));
+  else if (!has(r, "load.requests") && size.width * size.height <= 2 ** 24)
+    shown.push(...ownerMaps(r, size));
+  return [
+    make("div", {class: "pictures"}, shown),
+    has(r, "load.requests") &&
+      note(
+        "PEs take their pixels while the machine runs, so no rule says who owns which; loads are simulated exactly, from the pixels' costs.")
+  ];
+}
+
+// --- Loads and traffic
+
+function loads(r) {
+  const load = member(r, "load", "object"), values = list(r, "load.per_pe", "number"), mean = num(load, "mean");
+  const unit = has(r, "torus") ? "node" : "PE";
+  const phases =
+    Object.keys(load)
+      .filter((key) => has(load, `${key}.imbalance`))
+      .map(
+        (key) =>
+          `${key}: u = ${fixed(num(load, `${key}.imbalance`), 3)}, speed-up ${fixed(num(load, `${key}.speedup`), 1)}`);
+  const words = `The load of each ${unit}: modelled cycles, from ${grouped(num(load, "min"))} to ${
+    grouped(num(load, "max"))}; the line is their mean, ${grouped(fixed(mean, 1))}.`;
+  return [
+    paragraph(
+      `u = (max − mean) / mean = ${fixed(num(load, "imbalance"), 3)}. A load is the events that the rays of a ${
+        unit} counted, times what each costs by the ` +
+      `machine's instruction budget.${phases.length ? ` By phase: ${phases.join("; ")}.` : ""}`),
+    caption(bars(words, [`number of the ${unit}`, "cycles"], values, mean), words),
+    table(
+      `The load of each ${unit}`, [unit, "cycles", "of the mean"],
+      values.map((value, i) => [String(i), grouped(value), mean > 0 ? percent(value / mean) : "-"]),
+      "All are in the report, as `load.per_pe`.")
+  ];
+}
+
+function traffic(r) {
+  if (!has(r, "torus")) return null;
+  const links = "torus.bytes_per_link", words = "Bytes over the links of all nodes, by direction on the torus.";
+  const packets = member(r, "torus.packets", "object"), directions = list(r, `${links}.by_direction`, "number");
+  return [
+    tiles([
+      ["hops", count(r, "torus.hops")], ["bytes over links", count(r, `${links}.total`)],
+      ["busiest link", `${count(r, `${links}.max`)} bytes`],
+      ["mean of links", `${fixed(num(r, `${links}.mean`), 0)} bytes`], ["supersteps", count(r, "torus.supersteps")]
+    ]),
+    caption(
+      namedBars(words, directions.map((bytes, i) => ({
+                                        name: ["+x", "-x", "+y", "-y", "+z", "-z"][i] ?? "?",
+                                        text: `${Number((1e-6 * bytes).toPrecision(3))} MB`,
+                                        value: bytes
+                                      }))),
+      words),
+    table(
+      "Packets", ["packets", "made", "ended"],
+      Object.keys(packets).map((kind) => [kind, count(packets, `${kind}.made`), count(packets, `${kind}.ended`)]))
+  ];
+}
+
+// --- Counts, and what made it
+
+const counts = (r) => [make(
+  "div", {class: "tables"},
+  Object
+    .entries({
+      rays: "rays",
+      tests: "tests of rays against objects",
+      shading: "shading",
+      communication: "bus and ring",
+    })
+    .filter(([key]) => key !== "communication" || has(r, key))
+    .map(
+      ([key, title]) => table(
+        title, [title, "count"],
+        Object.keys(member(r, key, "object")).map((name) => [titled(name), count(r, `${key}.${name}`)]))))];
+
+const deviceRows = (r) => ["name", "platform", "version", "driver"].map(
+  (key) => [key === "name" ? "device" : key, str(r, `device.${key}`)]);
+
+function making(r) {
+  const used = kilobytes(num(r, "machine.pe_memory_used_bytes")),
+        seconds = (object, path) => fixed(num(object, path), 3);
+  return [
+    definitions([
+      ...deviceRows(r), ["lanes, group", `${num(r, "device.lanes")}, ${num(r, "device.group_size")}`],
+      ["set by", str(r, "device.tuned")],
+      [
+        "memory of a PE",
+        has(r, "machine.pe_memory_bytes") ? `${used} of ${kilobytes(num(r, "machine.pe_memory_bytes"))}` :
+                                            `${used}, no limit`
+      ],
+      ["hash of the image", code(str(r, "image.hash"))], ["build options", code(str(r, "device.build_options"))]
+    ]),
+    has(r, "measured.builds") &&
+      part(
+        "Builds",
+        table(
+          "Builds", ["program", "build s"],
+          list(r, "measured.builds", "object").map((build) => [str(build, "program"), seconds(build, "seconds")]))),
+    has(r, "measured.ranks") &&
+      part(
+        "Ranks",
+        table(
+          "Ranks", ["rank", "host", "device", "render s", "waiting s", "messages", "bytes sent"],
+          list(r, "measured.ranks", "object")
+            .map(
+              (rank) =>
+                [count(rank, "rank"), str(rank, "host"), str(rank, "device.name"), seconds(rank, "render_s"),
+                 seconds(rank, "waiting_s"), count(rank, "messages_sent"), count(rank, "bytes_sent")])))
+  ];
+}
+
+function showRender(r) {
+  heading(() => renderHead(r));
+  const torus = has(r, "torus");
+  section("pictures", torus ? "Picture and nodes" : "Picture and owners", () => pictures(r));
+  section("loads", torus ? "Load of each node" : "Load of each PE", () => loads(r));
+  section("traffic", "Traffic of the links", () => traffic(r));
+  section("model", "Modelled and measured", () => model(r));
+  section("labels", "Times by label", () => labels(r));
+  section("roof", "Roofline", () => roofline(r));
+  section("counts", "What was counted", () => counts(r));
+  section("made", "Device and build", () => making(r));
+}

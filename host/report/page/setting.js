@@ -1,0 +1,116 @@
+// A setting of mapping and PEs: from a report's machine, as text and from a link, #mapping=cyclic:16&pes=256, with the
+// words of raya's options. Knows nothing of the page.
+//
+// A state: {mapping, offset, fold, pes, grid: [A, B], tile: [w, h], seed, view, pe}, where each mapping keeps its own
+// figures while another is looked at; pe: the PE that is shown, or null.
+"use strict";
+
+const MAPPINGS = ["cyclic", "column", "rows", "blocks", "grid", "tiles", "random"];
+const VIEWS = ["owners", "loads", "costs", "picture"];
+const divisorsOf = (side) => Array.from({length: side}, (_, i) => i + 1).filter((d) => side % d === 0);
+const pairOf = (text) => /^\d{1,5}x\d{1,5}$/.test(text) ? text.split("x").map(Number) : null;
+const rootOf = (pes) => Math.round(Math.sqrt(pes));
+
+// Of the machine of a report; the other mappings get defaults: the offset of the paper, the squarest grid, small tiles.
+function stateOf(machine, {width, height}) {
+  const [mapping, more] = str(machine, "mapping").split(":"), pes = whole(machine, "pes"),
+                  slots = mapping === "cyclic" || mapping === "column";
+  if (!MAPPINGS.includes(mapping)) throw new Error(`machine.mapping is ${mapping}, which this page does not know`);
+  if (pes > width * height) throw new Error("machine.pes is larger than the number of pixels");
+  const divisor = (number, most) => {  // the largest up to `most`
+    while (number % most !== 0) --most;
+    return most;
+  };
+  const rows = divisor(pes, Math.floor(Math.sqrt(pes)));
+  return {
+    mapping,
+    offset: slots ? num(machine, "offset") : rootOf(pes) % width,
+    fold: slots ? str(machine, "fold") : "cyclic",
+    pes,
+    grid: mapping === "grid" && pairOf(more) || [rows, pes / rows],
+    tile: mapping === "tiles" && pairOf(more) || [divisor(width, 8), divisor(height, 8)],
+    seed: mapping === "random" ? Number(more) : 1,
+    view: "owners",
+    pe: null
+  };
+}
+
+// What model.js takes.
+function settingOf(state) {
+  const slots = state.mapping === "cyclic" || state.mapping === "column";
+  const [a, b] = state.mapping === "grid" ? state.grid : state.mapping === "tiles" ? state.tile : [0, 0];
+  return {
+    kind: slots ? "slots" : state.mapping,
+    offset: state.mapping === "cyclic" ? state.offset : 0,
+    fold: state.fold,
+    pes: state.mapping === "grid" ? a * b : state.pes,
+    a,
+    b,
+    seed: state.seed
+  };
+}
+
+// As --mapping takes it.
+function mappingText(state) {
+  const more = {
+    cyclic: () => `:${state.offset}`,
+    grid: () => `:${state.grid.join("x")}`,
+    tiles: () => `:${state.tile.join("x")}`,
+    random: () => `:${state.seed}`
+  }[state.mapping];
+  return state.mapping + (more ? more() : "");
+}
+
+function linkText(state) {
+  const setting = settingOf(state), parts = [`mapping=${mappingText(state)}`, `pes=${setting.pes}`];
+  if (setting.kind === "slots" && state.fold !== "cyclic") parts.push(`fold=${state.fold}`);
+  if (state.view !== "owners") parts.push(`view=${state.view}`);
+  if (state.pe !== null) parts.push(`pe=${state.pe}`);
+  return "#" + parts.join("&");
+}
+
+function optionsText(state) {
+  const setting = settingOf(state);
+  const fold = setting.kind === "slots" && state.fold !== "cyclic" ? ` --fold ${state.fold}` : "";
+  return `--mapping ${mappingText(state)} --pes ${setting.pes}${fold}`;
+}
+
+// Reads a link over `state`. What it asks for and cannot be is left as it was, and told.
+function withLink(state, link, {width, height}) {
+  const next = {...state}, problems = [], pixels = width * height;
+  const asked = new Map(link.replace(/^#/, "").split("&").filter(Boolean).map((part) => part.split("=", 2)));
+  const whole = (text, least, most, what) => {
+    if (/^\d{1,10}$/.test(text) && Number(text) >= least && Number(text) <= most) return Number(text);
+    problems.push(`${what} must be ${least} to ${most}`);
+    return null;
+  };
+  const one = (text, words, what) => {
+    if (words.includes(text)) return text;
+    problems.push(`${what} must be ${words.join(", ")}`);
+    return null;
+  };
+
+  const takeMapping = (text) => {
+    const [name, more] = text.split(":", 2), sides = pairOf(more || "");
+    if (one(name, MAPPINGS, "the mapping") === null) return;
+    if (name === "grid" && !(sides && sides[0] > 0 && sides[1] > 0 && sides[0] * sides[1] <= pixels))
+      return problems.push(`a grid is AxB with 1 to ${pixels} PEs`);
+    if (name === "tiles" && !(sides && width % sides[0] === 0 && height % sides[1] === 0))
+      return problems.push(`the sides of a tile must divide ${width} and ${height}`);
+    if (name === "cyclic" && more !== undefined) next.offset = whole(more, 0, width - 1, "the offset p") ?? next.offset;
+    if (name === "random" && more !== undefined) next.seed = whole(more, 0, 2 ** 32 - 1, "the seed") ?? next.seed;
+    if (name === "grid") next.grid = sides;
+    if (name === "tiles") next.tile = sides;
+    next.mapping = name;
+  };
+  if (asked.has("mapping")) {
+    next.fold = "cyclic";  // which links leave out
+    takeMapping(asked.get("mapping") ?? "");
+  }
+  if (asked.has("fold")) next.fold = one(asked.get("fold"), ["cyclic", "block"], "the fold") ?? next.fold;
+  if (asked.has("view")) next.view = one(asked.get("view"), VIEWS, "the view") ?? next.view;
+  if (asked.has("pes") && next.mapping !== "grid")
+    next.pes = whole(asked.get("pes") ?? "", 1, pixels, "the number of PEs") ?? next.pes;
+  if (asked.has("pe")) next.pe = whole(asked.get("pe") ?? "", 0, settingOf(next).pes - 1, "the PE to show");
+  return {state: next, problems};
+}

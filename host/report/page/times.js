@@ -1,0 +1,127 @@
+// Times of a render, modelled and measured, and rooflines of any report.
+"use strict";
+
+// Part, member of modelled_ms, meaning, and how the labels of commands begin that stand in for it here.
+const RING_PARTS = [
+  ["objects", "objects", "the scene over the bus to all PEs", /^bus\.broadcast/],
+  ["compute", "compute", "tracing, and anti-aliasing", /^(trace|supersample|filter\.)/],
+  ["of it filter", "filter", "sums and means of neighbours", /^filter\./],
+  ["of it compare", "compare", "which pixels differ from a neighbour", /^supersample\.compare/],
+  ["communication", "communication", "neighbours' pixels over ring or bus", /^(ring\.|bus\.send|bus\.pe)/],
+  ["image", "image", "pixels to the host", /^bus\.gather/]
+];
+const TORUS_PARTS = [
+  ["compute", "compute", "the busiest processor: making and tracing packets", /^(inject|trace_voxel)/],
+  ["messages", "messages", "the busiest processor: handling packets", /^(route|look|accept)/],
+  ["links", "links", "the busiest link", /^(exchange|return)/]
+];
+
+function model(r) {
+  const torus = has(r, "torus"), machine = torus ? "the torus of T805s" : str(r, "machine.name");
+  if (!has(r, "modelled_ms")) return [paragraph(`The rates of ${machine} are not known, so it has no modelled time.`)];
+  const commands = list(r, "measured.commands", "object"), rows = [],
+        ms = (key) => msText(num(r, `modelled_ms.${key}`));
+  for (const [name, key, what, labels] of torus ? TORUS_PARTS : RING_PARTS) {
+    const own = commands.filter((command) => labels.test(str(command, "label")));
+    if (name.startsWith("of it") && num(r, `modelled_ms.${key}`) === 0 && own.length === 0) continue;
+    rows.push([
+      name, what, ms(key), own.length ? msText(1e-6 * sum(own.map((command) => num(command, "total_ns")))) : "-",
+      [...new Set(own.map((command) => command.label))].join(", ")
+    ]);
+  }
+  const measured = [msText(1e3 * num(r, "measured.render_s")), "the whole render on the host's clock"];
+  if (torus) {
+    rows.push(
+      ["whole, if nothing waits", "a lower bound", ms("overlapped"), "-", ""],
+      ["whole, step by step", "an upper bound", ms("stepwise"), ...measured]);
+    if (has(r, "modelled_ms.asynchronous"))
+      rows.push(["whole, without supersteps", "simulated packet by packet", ms("asynchronous.finish"), "-", ""]);
+  } else
+    rows.push(["whole", "all of it; what is \"of it\" is part of compute", ms("total"), ...measured]);
+  return [
+    paragraph(`What the modelled machine, ${
+      machine}, would take by its own rates, next to what this device took for the commands that stand in for that part.`),
+    table("Modelled and measured time", ["part", "what", "modelled", "measured here", "commands here"], rows)
+  ];
+}
+
+function labels(r) {
+  const commands = list(r, "measured.commands", "object"),
+        total = sum(commands.map((command) => num(command, "total_ns")));
+  if (commands.length === 0) return [paragraph("The device does not time its commands.")];
+  const ms = (command, key) => fixed(1e-6 * num(command, key), 3),
+        words = "Commands of the device by their total time, the longest.";
+  const longest = [...commands].sort((a, b) => b.total_ns - a.total_ns).slice(0, 8);
+  return [
+    paragraph(
+      `The render took ${timeText(1e3 * num(r, "measured.render_s"))} on the host's clock, the build of its kernels ${
+        timeText(1e3 * num(r, "measured.build_s"))} before it. ` +
+      "Times of commands are the device's, from start to end."),
+    caption(
+      namedBars(words, longest.map((command) => ({
+                                     name: `${str(command, "label")} (${str(command, "kind")})`,
+                                     text: `${ms(command, "total_ns")} ms`,
+                                     value: command.total_ns
+                                   }))),
+      words),
+    table(
+      "Times by label", ["label", "kind", "launches", "total ms", "share", "minimum ms", "mean ms", "maximum ms", "MB"],
+      commands.map(
+        (command) =>
+          [str(command, "label"), str(command, "kind"), count(command, "launches"), ms(command, "total_ns"),
+           percent(total > 0 ? command.total_ns / total : 0), ms(command, "min_ns"), ms(command, "mean_ns"),
+           ms(command, "max_ns"),
+           has(command, "bytes") && num(command, "bytes") ? fixed(1e-6 * command.bytes, 3) : "-"]))
+  ];
+}
+
+// A drawing and a table of [name, row] against the peak, and what the peak is.
+function rooflineOf(peak, rows) {
+  const format = str(peak, "format"), points = [], giga = (path, digits = 2) => fixed(1e-9 * num(peak, path), digits);
+  const cells = rows.map(([name, row]) => {
+    const operations = num(row, "operations_per_s"), intensity = num(row, "operations_per_byte"),
+          rays = num(row, "rays_per_s");
+    if (operations > 0 && intensity > 0) points.push([intensity, 1e-9 * operations]);
+    return [
+      operations > 0 && intensity > 0 ? String(points.length) : "-", name, rays > 0 ? fixed(1e-6 * rays, 2) : "-",
+      operations > 0 ? fixed(1e-9 * operations, 3) : "-", fixed(1e-9 * num(row, "bytes_per_s"), 3),
+      intensity > 0 ? String(Number(intensity.toPrecision(3))) : "-", str(row, "bound"),
+      percent(num(row, "share_of_roof"), 2), has(row, "share_of_format") ? percent(num(row, "share_of_format"), 2) : "-"
+    ];
+  });
+  const tops = [["multiply-adds in fp32", 1e-9 * num(peak, "fp32_multiply_adds_per_s")]];
+  if (format !== "fp32") tops.push([`in ${format}`, 1e-9 * num(peak, "format_multiply_adds_per_s")]);
+  const slope = 1e-9 * num(peak, "copy_bytes_per_s");
+  if (![slope, ...tops.map(([, top]) => top)].every((rate) => rate > 0))
+    throw new Error("peak has a rate that is not above 0");
+  const words =
+    "Kernels, by their numbers in the table, below the device's roof: as fast as their bytes are copied, or as multiply-adds are computed.";
+  return [
+    caption(roof(words, slope, tops, points), words),
+    table(
+      "Roofline", ["no.", "kernel", "Mrays/s", "Gop/s", "GB/s", "op/byte", "bound", "of the roof", "of the format"],
+      cells),
+    paragraph(
+      `The peak was measured by small programs in the same run: ${
+        giga("fp32_multiply_adds_per_s")} Gop/s of multiply-adds in fp32; in ${format} ` +
+      `${giga("format_multiply_adds_per_s")} of multiply-adds, ${giga("format_divisions_per_s")} of divisions, ${
+        giga("format_roots_per_s")} of roots; ` +
+      `${
+        giga(
+          "copy_bytes_per_s")} GB/s copied, each byte counted as read and as written. An operation is one of the budgets of the counted events; bytes are the ` +
+      "minimum that the kernel has to move."),
+    num(peak, "scatter") > 0.15 &&
+      message(`The peak, measured three times, scattered by ${
+        percent(peak.scatter, 0)}: something else ran on the device, and shares of the peak say little.`)
+  ];
+}
+
+function roofline(r) {
+  if (has(r, "measured.no_roofline")) return [paragraph(`There is none: ${str(r, "measured.no_roofline")}.`)];
+  if (!has(r, "measured.peak"))
+    return [paragraph(
+      "The device's peak was not measured; ", code("raya render --page"), " and ", code("--profile"), " measure it.")];
+  return rooflineOf(
+    member(r, "measured.peak", "object"),
+    list(r, "measured.roofline", "object").map((row) => [str(row, "label"), row]));
+}
