@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import tempfile
-import warnings
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,7 +13,7 @@ from raya import _engine
 from raya.lab.document import write_document, write_page
 from raya.lab.page import shown
 from raya.lab.study import studies, study_of_file
-from raya.lab.worker import Worker
+from raya.lab.worker import Worker, warn_as_raya
 from tqdm import tqdm
 
 EXIT_USER, EXIT_DEVICE = 2, 3
@@ -92,6 +91,8 @@ def run_all(options, chosen, left_out, scenes):
                     page, device = worker.run(name, scenes, kept, options)
                 except (BrokenProcessPool, raya.DeviceError) as error:
                     reason = "the OpenCL driver crashed" if isinstance(error, BrokenProcessPool) else str(error)
+                    if len(chosen) == 1:
+                        raise raya.DeviceError(reason) from None
                     left_out.append(f"study {one.name} is left out: {reason}")
                     print(f"raya: {left_out[-1]}", file=sys.stderr)
                     code = EXIT_DEVICE
@@ -117,7 +118,7 @@ def run_all(options, chosen, left_out, scenes):
 
 def main(arguments):
     options = settings_of(arguments)
-    warnings.showwarning = lambda text, *_: options.verbosity > -2 and print(f"raya: warning: {text}", file=sys.stderr)
+    warn_as_raya(options)
     chosen, left_out = wanted_studies(options.study)
     for line in left_out:
         print(f"raya: {line}", file=sys.stderr)
@@ -150,6 +151,10 @@ if __name__ == "__main__":
         sys.exit(main(sys.argv[1:]))
     except Ended as ended:
         end_by(ended.args[0])
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes it once more at its end
+        print("raya: cannot write to stdout: Broken pipe", file=sys.stderr)
+        sys.exit(EXIT_USER)
     except (ValueError, OSError) as error:
         print(f"raya: {error}", file=sys.stderr)
         sys.exit(EXIT_USER)

@@ -45,7 +45,10 @@ def study_of_file(path):
     path = Path(path)
     spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise ValueError(f"{path}: {type(error).__name__}: {error}") from error
     if not callable(getattr(module, "run", None)) or not module.__doc__:
         raise ValueError(f"{path}: is not a study: it needs a docstring (title, question, method) and run(lab, scenes)")
     name = path.stem.replace("_", "-")

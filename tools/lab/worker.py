@@ -1,6 +1,8 @@
 """A process that runs studies: a driver that crashes ends one of them, and the next has a new process."""
 import os
+import sys
 import traceback
+import warnings
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
@@ -13,9 +15,15 @@ from raya.lab.study import studies, study_of_file
 laboratory = None  # of this process: it keeps its device from one study to the next
 
 
+def warn_as_raya(options):
+    """From now on warnings are lines on stderr as the program writes them; none with -qq."""
+    warnings.showwarning = lambda text, *_: options.verbosity > -2 and print(f"raya: warning: {text}", file=sys.stderr)
+
+
 def run_study(study, scenes, folder, options):
     """(page, device)"""
     global laboratory
+    warn_as_raya(options)
     one = study_of_file(study) if study.endswith(".py") else studies()[study]
     if laboratory is None:
         more = {"no_tuned": True} if options.no_tuned else {}
