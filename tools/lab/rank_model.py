@@ -1,8 +1,10 @@
 """What both machines take on MPI ranks: predicted from what one rank took, what a render counted, and a network."""
+import os
+
 import numpy as np
 import raya
 from raya.lab.laboratory import format_for
-from raya.lab.voxels import NO_LIMIT, near_cube, powers, sides_text
+from raya.lab.voxels import NO_LIMIT, even_scene, near_cube, powers, sides_text
 
 MOST = 65_536
 SIDES, QUEUE = (8, 8, 8), 1024
@@ -33,6 +35,10 @@ class Ring:
                                "block": 12 * raya.largest_share(size, size, pes=pes, offset=offset),
                                "image": 12 * size * size, "scene": 4 * costs.job_words})
         self.arrays = [f"{part['pes']} PEs" for part in self.parts]
+
+    def weak(self, ranks):
+        """Arguments of a render with that many times as many pixels."""
+        return [*self.arguments[:-1], str(round(int(self.arguments[-1]) * ranks**0.5))]
 
     def predict(self, i, one, network, processors):
         """Seconds by what they are spent on."""
@@ -66,6 +72,13 @@ class Torus:
         self.parts = [counted[r] if r <= nodes else cut_further(counted[nodes], r // nodes) for r in self.ranks]
         self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed"
                        for r in self.ranks]
+        self.objects = scene.objects
+
+    def weak(self, ranks):
+        """Arguments of a render with that many times as many objects, spread evenly."""
+        file = os.path.join(os.path.dirname(self.arguments[0]), f"even-{ranks}.nff")
+        even_scene(self.objects * ranks).save(file)
+        return [file, *self.arguments[1:]]
 
     def predict(self, i, one, network, processors):
         part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network

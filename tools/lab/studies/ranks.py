@@ -23,6 +23,9 @@ How many MPI ranks are worth having, and from where on do they talk more than th
   B to 4 MB), two that are assumed, and one that is given, where it is (`--network`). Measured: `mpirun -n R raya
   render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one thread a rank; the model is
   compared with the minimum.
+- Scaling, measured the same way: strong has the same picture on more ranks; weak has pixels in proportion to ranks on
+  the ring, and objects, spread evenly, on the torus. Efficiency is the work (modelled cycles) that a core does in a
+  second, by the minimum, over that of one rank.
 """
 import json
 import os
@@ -37,7 +40,7 @@ from raya.lab.programs import lacks_mpirun, on_ranks, render_on_ranks
 from raya.lab.rank_model import PARTS, Ring, Torus
 from raya.lab.voxels import even_scene, powers
 
-TURNS, ENOUGH_S, QUIET = 3, 5, 0.05
+TURNS, ENOUGH_S, WEAK_ENOUGH_S, QUIET = 3, 5, 2, 0.05
 
 
 def look_around():
@@ -61,21 +64,44 @@ def work_of(machine, report):
     return {"trace": trace, "rest": device - trace, "host": max(0.0, report["measured"]["render_s"] - device)}
 
 
-def measure(machine, here, device):
-    """{ranks: (seconds of each render, report of the fastest)}"""
-    first = render_on_ranks(1, machine.arguments)  # which builds the kernels
+def measure(renders, device, enough_s=ENOUGH_S):
+    """{ranks: arguments} -> {ranks: (seconds of each render, report of the fastest)}"""
+    first = render_on_ranks(1, renders[1])  # which builds the kernels
     if first["device"]["name"] != device:
         raise raya.InputError(f"study ranks runs on the default devices of its ranks, here {first['device']['name']}, "
                               f"and was given {device}: leave --device out, or name the device in RAYA_DEVICE")
-    trials = {ranks: ([], None) for ranks in here}
+    trials = {ranks: ([], None) for ranks in renders}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():
-            if sum(seconds) >= ENOUGH_S:
+            if sum(seconds) >= enough_s:
                 continue
-            report = render_on_ranks(ranks, machine.arguments)
+            report = render_on_ranks(ranks, renders[ranks])
             s = report["measured"]["render_s"]
             trials[ranks] = (seconds + [s], report if not seconds or s < min(seconds) else best)
     return trials
+
+
+def scaling_of(machine, scaling, trials, here):
+    """Measured: modelled cycles that a core works off in a second, over those of one rank."""
+    def rate(ranks):
+        seconds, report = trials[ranks]
+        return sum(report["load"]["per_pe"]) / min(seconds) / cores_of(report, ranks, here)
+
+    one = trials[1][1]
+    for ranks, (seconds, report) in trials.items():
+        image = report["image"]
+        if scaling == "strong" and image["hash"] != one["image"]["hash"]:
+            raise raya.DeviceError(f"{ranks} ranks make another image than one: {image['hash']} and "
+                                   f"{one['image']['hash']}")
+        yield {"machine": machine.name, "scaling": scaling, "ranks": ranks, "cores": cores_of(report, ranks, here),
+               "size": f"{image['width']}x{image['height']}", "work (cycles)": sum(report["load"]["per_pe"]),
+               "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
+               "measured efficiency": rate(ranks) / rate(1)}
+
+
+def cores_of(report, ranks, here):
+    """Processors that the ranks have together; a device that is none counts as one."""
+    return here[ranks] if report["device"]["platform"] == "Portable Computing Language" else ranks
 
 
 def processor_time():
@@ -98,24 +124,29 @@ def ranks(lab, scenes):
         here, ping = look_around()
         machines = [kind(lab, scene, file, size) for kind, scene, file in
                     zip((Ring, Torus), (on_ring, on_torus), files)]
-        trials = [measure(machine, here, lab.session.device["name"]) for machine in machines]
+        device = lab.session.device["name"]
+        trials = [measure(dict.fromkeys(here, machine.arguments), device) for machine in machines]
+        weak = [measure({ranks: machine.weak(ranks) for ranks in here}, device, WEAK_ENOUGH_S) for machine in machines]
         busy, whole, own = (b - a for a, b in zip(before, processor_time()))
     networks = networks_of(ping, lab.network)
     ones = [work_of(machine, trial[1][1]) for machine, trial in zip(machines, trials)]
     rows = pd.DataFrame([row for machine, one in zip(machines, ones) for row in rows_of(machine, one, networks)])
     checks = pd.DataFrame([row for some in zip(machines, ones, trials)
                            for row in checks_of(*some, networks["this host"][0], here)])
+    scaling = pd.DataFrame([row for machine, *both in zip(machines, trials, weak)
+                            for name, some in zip(("strong", "weak"), both)
+                            for row in scaling_of(machine, name, some, here)])
     summary = pd.DataFrame([summary_of(*one) for one in rows.groupby(["machine", "network"], sort=False)])
     others = min(max((busy - own) / whole, 0), 1) if whole > 0 else 0
     return Page({"scene": on_ring.name, "torus_scene": on_torus.name, "size": size, "torus_size": size,
                  "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": ENOUGH_S, "alpha_s": ping["alpha_s"],
                  "beta_s_per_byte": ping["beta_s_per_byte"]},
                 [*(finding_of_machine(summary, name) for name in ("ring", "torus")), finding_of_checks(checks),
-                 finding_of_others(others), finding_of_network(ping)],
+                 finding_of_scaling(scaling), finding_of_others(others), finding_of_network(ping)],
                 [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None,
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
-                tables=tables_of(rows, checks, summary, networks, ping), plots=[*plots_of(rows, checks)],
+                tables=tables_of(rows, checks, scaling, summary, networks, ping), plots=[*plots_of(rows, checks)],
                 news=["Neither paper has more than one machine to run on; here its array is divided over as many hosts "
                       "as one likes, with the same image."],
                 clock="measured here where it says so, all else predicted from measured seconds of one rank. What a "
@@ -147,9 +178,8 @@ def rows_of(machine, one, networks):
 
 def checks_of(machine, one, trial, network, here):
     """What is predicted for the ranks that were measured, beside it."""
-    on_processors = trial[1][1]["device"]["platform"] == "Portable Computing Language"
     for i, (count, (seconds, _)) in enumerate(trial.items()):
-        cores = here[count] if on_processors else count
+        cores = cores_of(trial[1][1], count, here)
         parts = machine.predict(i, one, network, cores)
         predicted = 1e3 * (sum(parts.values()) - parts["broadcast"])
         yield {"machine": machine.name, "ranks": count, "cores": cores, "predicted (ms)": predicted,
@@ -189,6 +219,15 @@ def finding_of_checks(checks):
             f"{TURNS} renders each.")
 
 
+def finding_of_scaling(scaling):
+    def text(machine, name):
+        some = scaling[(scaling["machine"] == machine) & (scaling["scaling"] == name) & (scaling["ranks"] > 1)]
+        return ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}" for _, r in some.iterrows())
+
+    kinds = [f"{machine}, {name}: {text(machine, name)}" for machine in ("ring", "torus") for name in ("strong", "weak")]
+    return f"Measured efficiency against one rank of one core: {'; '.join(kinds)}."
+
+
 def finding_of_others(share):
     if share <= QUIET:
         return f"While this was measured other programs had {100 * share:.1f} % of this host's processors."
@@ -203,10 +242,11 @@ def finding_of_network(ping):
             f"and 4 MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s.")
 
 
-def tables_of(rows, checks, summary, networks, ping):
+def tables_of(rows, checks, scaling, summary, networks, ping):
     alpha, beta = ping["alpha_s"], ping["beta_s_per_byte"]
     return [Table("ranks", "Where communication takes half, and the fewest seconds", summary),
             Table("ranks-here", "Predicted and measured on one core a rank", checks),
+            Table("ranks-scaling", "Strong and weak scaling, measured here", scaling),
             Table("ranks-networks", "The networks", [
                 {"network": name, "alpha (us)": 1e6 * a, "beta (ns a byte)": 1e9 * b, "source": source}
                 for name, ((a, b), source) in networks.items()]),
