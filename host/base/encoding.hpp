@@ -1,4 +1,4 @@
-// Bytes in other forms: base64, hexadecimal digits, a hash, gzip.
+// Text and bytes in other forms: replaced, base64, hexadecimal digits, a hash, gzip.
 #pragma once
 #include <memory>
 #include <span>
@@ -6,6 +6,9 @@
 #include <string_view>
 
 namespace raya {
+
+/// `text` with every `what` in it replaced by `by`.
+std::string replaced(std::string text, const std::string& what, const std::string& by);
 
 std::string base64(std::string_view bytes);
 

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <string_view>
 
-#include "host/report/text_tables.hpp"
+#include "host/base/encoding.hpp"
 
 namespace raya {
 

@@ -17,7 +17,7 @@
 #include "host/image/image_io.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
-#include "host/report/view_json.hpp"
+#include "host/report/scene_report.hpp"
 #include "host/ring/ring_result.hpp"
 #include "host/torus/history.hpp"
 #include "host/torus/torus_result.hpp"

@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "host/model/unit_text.hpp"
 #include "host/report/table.hpp"
-#include "host/report/view_json.hpp"
 
 namespace raya {
 namespace {
@@ -194,6 +194,21 @@ std::string human_summary(const SceneReport& r) {
     for (const NffRemark& remark : r.skipped) text += fmt::format("skipped {}\n", remark_text(r.file, remark));
     for (const FormatFit& f : r.formats) text += fmt::format("format  {}\n", format_text(f));
     return text + "\n" + machine_table(r.machines) + refusals_text(r.machines);
+}
+
+Json vector_json(const Vec3& v) { return std::array{v.x, v.y, v.z}; }
+
+Json view_json(const Scene& scene) {
+    Json lights = Json::list();
+    for (const Light& light : scene.lights)
+        lights.push_back(
+            {{"position", vector_json(light.position)}, {"colour", vector_json(light_colour(scene, light))}});
+    return {{"from", vector_json(scene.view.from)},
+            {"at", vector_json(scene.view.at)},
+            {"up", vector_json(scene.view.up)},
+            {"angle_degrees", scene.view.angle_degrees},
+            {"background", vector_json(scene.background)},
+            {"lights", lights}};
 }
 
 }  // namespace raya

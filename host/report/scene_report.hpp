@@ -1,5 +1,6 @@
 // What `raya info` tells of a scene: plain data, as JSON for programs and as a few lines for people.
 #pragma once
+
 #include <Imath/ImathBox.h>
 
 #include <cstdint>
@@ -58,5 +59,12 @@ Json to_json(const SceneReport& report);
 
 /// Objects, camera, lights, extent, formats, and a table of machines.
 std::string human_summary(const SceneReport& report);
+
+Json vector_json(const Vec3& v);
+
+/// Camera, background and lights, each with the colour that it emits: what --from, --at, --up, --angle, --background
+/// and
+/// --light take to make the picture again.
+Json view_json(const Scene& scene);
 
 }  // namespace raya

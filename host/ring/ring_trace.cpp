@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host/model/budget.hpp"
-#include "host/report/traced_pes.hpp"
+#include "host/report/trace_file.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_result.hpp"
 

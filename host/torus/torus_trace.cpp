@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "host/model/t805.hpp"
-#include "host/report/traced_pes.hpp"
+#include "host/report/trace_file.hpp"
 #include "host/torus/topology.hpp"
 
 namespace raya {

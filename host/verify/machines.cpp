@@ -1,4 +1,3 @@
-
 // What the machines rest on beside numbers, by kernels/checks/machine.cl: whole-number arithmetic, local memory,
 // barriers and atomics. All of it is exact: the host computes the same with the same headers.
 #include <fmt/core.h>

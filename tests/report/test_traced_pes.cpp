@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "host/report/traced_pes.hpp"
+#include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
 
 namespace raya {

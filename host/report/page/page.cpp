@@ -4,7 +4,6 @@
 
 #include "host/base/encoding.hpp"
 #include "host/embedded.hpp"
-#include "host/report/text_tables.hpp"
 
 namespace raya {
 namespace {
