@@ -58,7 +58,7 @@ std::vector<std::string> groups_of(const CommandText& command);
 /// The first thing that help says, for a line beside a name: up to `most` letters.
 std::string brief(const std::string& help, std::size_t most = 72);
 
-/// Calls `each` with every command and the words that lead to it, "raya study fig7", the first one first.
+/// Calls `each` with every command and the words that lead to it, "raya generate balls", the first one first.
 template <class Each>
 void for_each_command(const CommandText& command, const Each& each, const std::string& before = "") {
     const std::string path = before.empty() ? command.name : before + ' ' + command.name;
@@ -66,7 +66,7 @@ void for_each_command(const CommandText& command, const Each& each, const std::s
     for (const CommandText& one : command.commands) for_each_command(one, each, path);
 }
 
-/// The help of a command that the words `path` lead to, "raya study fig7": usage, summary, examples, commands, options
+/// The help of a command that the words `path` lead to, "raya generate balls": usage, summary, examples, commands, options
 /// by their groups, what stands below. No line is longer than `width` letters but where a word is.
 std::string help_text(const CommandText& command, const std::string& path, std::size_t width);
 

@@ -23,7 +23,7 @@ std::vector<CommandText> names_below(const CommandText& command, const std::vect
     return all;
 }
 
-// Words that lead to a command, as `help study fig7` has them, are offered as commands are.
+// Words that lead to a command, as `help generate balls` has them, are offered as commands are.
 CommandText with_words_as_commands(const CommandText& program) {
     CommandText all = program;
     for (CommandText& command : all.commands) {

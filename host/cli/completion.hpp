@@ -22,8 +22,8 @@ std::string fish_completion(const CommandText& program);
 /// 'text' as one word of a shell, bash's and zsh's: it's as 'it'\''s'.
 std::string shell_quoted(const std::string& text);
 
-/// Cases of a shell's `case` by a command's words, those with the same `body` together: "'raya study fig7'|'raya study
-/// fig8')".
+/// Cases of a shell's `case` by a command's words, those with the same `body` together: "'raya generate
+/// balls'|'raya generate gears')".
 std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& words_and_bodies);
 
 }  // namespace raya

@@ -41,9 +41,9 @@ void print_help(const CLI::App& program, const std::vector<std::string>& words) 
 void add_help_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
     add_examples(*command, {{"raya help render", "What raya render --help prints: usage, examples, all options"},
-                            {"raya help study fig7", "The same of a study"}});
+                            {"raya help generate balls", "The same of one generator"}});
     const auto words = std::make_shared<std::vector<std::string>>();
-    add_value(*command, "COMMAND", *words, "The words that lead to it, such as study fig7; default: raya's own")
+    add_value(*command, "COMMAND", *words, "The words that lead to it, such as generate balls; default: raya's own")
         ->type_name("COMMAND");
     command->callback([words, &program] { print_help(program, *words); });
 }

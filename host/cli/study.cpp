@@ -106,10 +106,9 @@ Json settings_of(const StudyCommand& command) {
 
 void describe_study(CLI::App& command, StudyCommand& options) {
     OptionGroup group(command, kFiles);
-    offer_words(add_value(command, "STUDY", options.study, "Its name (below), all, or a file with a study of yours")
-                    ->type_name("STUDY|all|FILE.py")
-                    ->required(),
-                study_names());
+    CLI::Option* const study = add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
+                                        "Its name (below), all, or a file with a study of yours");
+    offer_words(study->required(), study_names());
     add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
              "Scenes in NFF, one of them - for stdin; of `all`, studies of one scene take the first; default: the "
              "study's own");
@@ -176,10 +175,9 @@ void check_folder(const fs::path& folder) {
 
 void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run) {
     CLI::App* command = program.add_subcommand("study", "Measure over many renders, and test what the papers claim");
-    add_examples(*command,
-                 {{"raya study fig7 -o fig7", "One study; open fig7/index.html in a browser"},
-                  {"raya study fig8 scenes/mirrors.nff --size 64 -o mirrors", "Of another scene, in a small size"},
-                  {"raya study all -o studies", "Every study, and one document of them all"}});
+    add_examples(*command, {{"raya study fig8 scenes/mirrors.nff --size 64 -o mirrors",
+                             "One study of a scene, in a small size; open mirrors/index.html in a browser"},
+                            {"raya study all -o studies", "Every study, and one document of them all"}});
     command->footer(studies_text() + command->get_footer());
     const auto options = std::make_shared<StudyCommand>();
     describe_study(*command, *options);

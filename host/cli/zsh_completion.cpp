@@ -69,7 +69,7 @@ constexpr const char* kBeginning = R"zsh(#compdef raya
 _raya() {
     local node=raya
     integer at=1
-    # The words of a command lead, as in: raya study fig7.
+    # The words of a command lead, as in: raya generate balls.
     while ((at + 1 < CURRENT)) && [[ " $_raya_nodes " == *" ${node// /_}_$words[at+1] "* ]]; do
         node+=" $words[++at]"
     done

@@ -152,7 +152,7 @@ TEST_CASE("what a scene's file has beside NFF is warned of and reported, with --
     strict.push_back("--strict");
     CHECK(run_raya(strict).code == 2);
     for (const Words& other :
-         {Words{"bench", scene, "--strict"}, Words{"study", "fig7", scene, "--strict", "-o", folder / "s"}}) {
+         {Words{"bench", scene, "--strict"}, Words{"explore", scene, "--strict", "-o", folder / "s.html"}}) {
         const RunOutcome refused = run_raya(other);
         INFO(refused.told());
         CHECK(refused.code == 2);

@@ -89,12 +89,14 @@ Words long_work(const std::string& command, const Words& more) {
 /// Every command that takes a device, while it compiles and while it computes.
 std::vector<Phase> computing(const Folders& folders, bool builds) {
     const std::string out = folders.outputs / "x.ppm", cache = folders.cache.path();
+    std::vector<Words> calls = {long_work("render", {"-o", out, "--machine", "grande"}),
+                                long_work("render", {"-o", out, "--machine", "torus", "--nodes", "2x2x1"}),
+                                long_work("bench", {}),
+                                {"verify", "--full", "--lanes", "1"},
+                                long_work("explore", {"-o", folders.outputs / "x.html"})};
+    if (RAYA_STUDIES) calls.push_back({"study", "scale", "-o", folders.inputs / "scale"});
     std::vector<Phase> phases;
-    for (const Words& words :
-         {long_work("render", {"-o", out, "--machine", "grande"}),
-          long_work("render", {"-o", out, "--machine", "torus", "--nodes", "2x2x1"}), long_work("bench", {}),
-          Words{"verify", "--full", "--lanes", "1"}, Words{"study", "scale", "-o", folders.inputs / "scale"},
-          long_work("explore", {"-o", folders.outputs / "x.html"})}) {
+    for (const Words& words : calls) {
         const std::string own = cache + "/" + std::to_string(phases.size());
         fs::create_directories(own);
         const Surroundings around{.variables = {{"POCL_CACHE_DIR", own}}};
