@@ -93,17 +93,13 @@ def ratio(comparison):
     return comparison.ours / comparison.paper if comparison.paper else math.nan
 
 
-def with_unit(number, unit):
-    return f"{number} {unit}" if unit else number
-
-
 def cells_of_comparisons(page):
     """The header and rows of the table that compares with papers; without papers, of the chief figures."""
     def ours(c):
-        return with_unit(shown(c.ours) + (f" +- {c.half_width:.2g}" if c.half_width else ""), c.unit)
+        return f"{shown(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
 
     def paper(c):
-        return "-" if c.paper is None else with_unit(shown(c.paper), c.unit) + (" (derived)" if c.derived else "")
+        return "-" if c.paper is None else f"{shown(c.paper)} {c.unit}".rstrip() + (" (derived)" if c.derived else "")
 
     columns = {"": lambda c: c.what, page.beside or "paper": paper, "ours": ours,
                "ours / theirs": lambda c: f"{ratio(c):.3g}" if c.paper else "-", "remark": lambda c: c.remark}
@@ -140,9 +136,8 @@ def cells_of_table(table):
 
 def lines_of_run(page):
     """How to repeat a page: what ran, and with which settings."""
-    lines = [(key, page.run[key]) for key in ("command", "version", "device") if page.run]
-    return lines + [(key, value if isinstance(value, str) else json.dumps(plain(value)))
-                    for key, value in page.settings.items()]
+    return [(key, value if isinstance(value, str) else json.dumps(plain(value)))
+            for key, value in [*page.run.items(), *page.settings.items()]]
 
 
 def command_of(pages):

@@ -112,27 +112,18 @@ def one_of(scenes):
 
 
 def balance_pass(lab, scenes, first):
-    """One pass over one scene, a PE for each column: (scene, size, cost image of the picture, those of the views)."""
-    scene = one_of(scenes)
-    size = lab.size(256)
+    """One pass over one scene, a PE for each column: (settings, cost image of the picture, those of the views)."""
+    scene, size = one_of(scenes), lab.size(256)
     ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
-    image = (lambda costs: costs.trace) if first else (lambda costs: costs.supersample)
-    return scene.name, size, image(ensemble.picture), [image(view) for view in ensemble.views]
+    picture, *views = (one.trace if first else one.supersample for one in [ensemble.picture, *ensemble.views])
+    return {"scene": scene.name, "size": size, "pes": size, "views": len(views), "view_seeds": f"1..{len(views)}",
+            "lowest_view_degrees": 5, "highest_view_degrees": 75}, picture, views
 
 
 VIEWS_PROSE = """
 - Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
   distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %."""  # of the studies of one pass, below what they measure
-
-
-def settings_of_pass(scene, size, views):
-    return {"scene": scene, "size": size, "pes": size, "views": len(views), "view_seeds": f"1..{len(views)}",
-            "lowest_view_degrees": 5, "highest_view_degrees": 75}
-
-
-def study_scenes():
-    return [raya.example(name) for name in ("centre", "spheres", "glass", "polygons", "cones")]
+  looks at."""  # of the studies of one pass, below what they measure
 
 
 Measured = namedtuple("Measured", "least median largest runs")  # seconds

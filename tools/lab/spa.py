@@ -76,10 +76,6 @@ class SpaRun:
     def rotations(self):
         return self.report["communication"]["rotations"]
 
-    def phase(self, name):
-        """The load of a phase: {'max', 'imbalance', ...}."""
-        return self.report["load"][name]
-
 
 def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
     options = dict(size=size, pes=pes, offset=offset, antialias=antialias, format=format_for(scene), accel="none",
@@ -117,9 +113,10 @@ class SmoothingRuns:
         """A row of each offset that was rendered; times in ms."""
         all_rows = []
         for p, run in self.runs.items():
-            t, last = run.time(factor), run.phase("supersample" if self.antialias == "supersample" else "trace")
+            t, load = run.time(factor), run.report["load"]
+            last = load["supersample" if self.antialias == "supersample" else "trace"]
             row = {"p": p, "rotations": run.rotations, "communication": t["communication"], "filter": t["filter"],
-                   "compare": t["compare"], "trace": factor * spa_ms(run.phase("trace")["max"]),
+                   "compare": t["compare"], "trace": factor * spa_ms(load["trace"]["max"]),
                    "supersample": factor * spa_ms(last["max"]), "u": last["imbalance"]}
             row["filtering"] = row["filter"] + row["communication"]
             row["filtered"] = row["trace"] + row["filtering"]
@@ -130,10 +127,6 @@ class SmoothingRuns:
 
     def times(self, factor=FACTOR):
         return offset_times(self.costs, self.size, self.antialias, factor)
-
-    def near(self, factor=FACTOR):
-        """The offsets 0..16 of them."""
-        return self.times(factor)[:17]
 
     @property
     def recomputed(self):

@@ -12,7 +12,7 @@ import re
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Table, series_by, study, study_scenes
+from raya.lab import Page, Plot, Table, series_by, study
 
 REDUCED = [name + cut for name in "e8m21 e8m18 e8m15 e7m15 e6m15 e6m14 e6m13".split() for cut in ("", "t")]
 STEP, SAMPLES = 1 / 255, 5  # what a shown image can show: one step of 8 bits
@@ -58,7 +58,8 @@ def rows_of(lab, scene, size):
 @study("formats")
 def formats(lab, scenes):
     size = lab.size(256)
-    by_scene, lanes = zip(*(rows_of(lab, scene, size) for scene in scenes or study_scenes()))
+    own = [raya.example(name) for name in ("centre", "spheres", "glass", "polygons", "cones")]
+    by_scene, lanes = zip(*(rows_of(lab, scene, size) for scene in scenes or own))
     rows = pd.concat(by_scene, ignore_index=True)
     overview = []
     for form, some in rows.groupby("format", sort=False):

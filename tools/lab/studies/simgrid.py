@@ -13,8 +13,7 @@ Does another simulator take as long for the same history on the same machine?
   ways share. SimGrid's own torus lets a message hold all links of its way at once; transputers store it in every node.
 - Effects are switched on one after another, each machine having all that the one before has: computing alone, in which
   messages take no time; the processors' part of messages; links of 1.7 MB/s each way; both ways sharing 2.4 MB/s;
-  finite buffers.
-- Effects on the plot are numbered from 0 in that order.
+  finite buffers. On the plot they are numbered from 0.
 """
 import os
 import tempfile
@@ -47,10 +46,8 @@ def ask_simgrid(result, changes):
         messages = result.write_replay(platform, replay, **changes)
         words = output_of([beside_raya("simgrid_replay"), platform, replay, "--log=root.thres:error"],
                           "simgrid_replay").split()
-    if words[0::2] != ["finish_ms", "delivered"]:
-        raise raya.InputError("simgrid_replay: does not print its time")
-    if int(words[3]) != messages:
-        raise raya.InputError(f"simgrid_replay: {words[3]} of {messages} messages delivered")
+    if words[0::2] != ["finish_ms", "delivered"] or int(words[3]) != messages:
+        raise raya.InputError(f"simgrid_replay: does not deliver {messages} messages, but prints {' '.join(words)}")
     return messages, float(words[1])
 
 
@@ -72,8 +69,7 @@ def rows_of(lab, scene, size, links, inject):
 
 @study("simgrid", one_scene=True, lacks=lacks)
 def simgrid(lab, scenes):
-    scene = scenes[0] if scenes else even_scene(512)
-    size = lab.size(48)
+    scene, size = scenes[0] if scenes else even_scene(512), lab.size(48)
     rows = pd.DataFrame([row for links in ("torus3d", "torus2d") for inject in ("root", "all")
                          for row in rows_of(lab, scene, size, links, inject)])
     whole = rows[rows["machine"] == list(EFFECTS)[-1]]
@@ -91,8 +87,8 @@ def simgrid(lab, scenes):
                  for _, row in whole.iterrows()],
                 tables=[Table("simgrid", "Time of one history, by raya and by SimGrid",
                               rows.drop(columns=["overlapped", "stepwise"]))],
-                plots=[Plot("simgrid", "Time of the machine, one effect after "
-                                       "another", "effects", "modelled ms", series)],
+                plots=[Plot("simgrid", "Time of the machine, one effect after another", "effects", "modelled ms",
+                            series)],
                 news=["The asynchronous torus is compared with a simulator that others wrote; neither paper has been."],
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
 

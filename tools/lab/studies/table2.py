@@ -58,7 +58,7 @@ def table2(lab, scenes):
             f"{device}, {SPA['format']}": device_seconds(lab, scene, size, SPA["format"])}
     reference, fp32, spa22 = here.values()
     in_paper = papers.is_papers(scene.name, size)
-    speedup = array.phase("trace")["speedup"]
+    speedup = array.report["load"]["trace"]["speedup"]
     balance = job_gain(papers.ONE_PE_COMPUTE_MS, papers.ONE_PE_COMPUTE_MS / speedup)
     factors = pd.DataFrame({"factor": FACTORS, "1 PE: compute (ms)": [one.time(f)["compute"] for f in FACTORS],
                             "all PEs: compute (ms)": [array.time(f)["compute"] for f in FACTORS]})
