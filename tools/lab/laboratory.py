@@ -51,12 +51,6 @@ def format_for(scene):
     return SPA["format"] if 4 * raya.job_words(scene) <= SPA["pe_memory_bytes"] else "fp32"
 
 
-def view_count(scene, size, most=VIEWS):
-    """64 views of scenes like the paper's at 256 x 256; fewer of large images and of many objects, 4 at least."""
-    tests = 2**27 // (size * size * max(scene.objects, 1))
-    return max(min(4, most), min(tests, most))
-
-
 class Laboratory:
     """Renders, each once: cost images are kept in a folder, by scene and settings, for all studies of a call.
 
@@ -100,7 +94,8 @@ class Laboratory:
         return costs
 
     def ensemble(self, scene, size, antialias="none", most=VIEWS):
-        count = view_count(scene, size, most)
+        """64 views of scenes like the paper's at 256 x 256; fewer of large images and of many objects, 4 at least."""
+        count = max(min(4, most), min(2**27 // (size * size * max(scene.objects, 1)), most))
         views = [self.costs(scene.random_view(seed).renamed(f"{scene.name}, view {seed}"), size, antialias)
                  for seed in range(1, count + 1)]
         return Ensemble(self.costs(scene, size, antialias), views)

@@ -78,6 +78,8 @@ class Comparison:
     half_width: Optional[float] = None
 
     def __post_init__(self):
+        if self.paper is not None and np.isnan(self.paper):
+            self.paper = None
         if not isinstance(self.ours, numbers.Real) or np.isnan(self.ours):
             raise ValueError(f"comparison '{self.what}': ours is {self.ours!r}, not a number")
 
@@ -142,10 +144,6 @@ class Page:
             if len(names) != len(set(names)):
                 raise ValueError(f"study {name}: two files have one name: {sorted(names)}")
         return self
-
-    def table(self, name):
-        """The rows of a table."""
-        return next(t.rows for t in self.tables if t.name == name)
 
 
 def shown(value):

@@ -1,10 +1,4 @@
-"""Modelled times of the SPA on one clock, and how sure it is.
-
-Computing is the instruction budget's cycles of 100 ns times a factor for what the budget does not see; rotations,
-exchanges and transfers are at the rates of the real machine. The factor is taken from the filter, the only computing
-of Kohata & Ito that depends on no scene: Tables 3 and 4 leave 7 ms for it [D], the budget has 1.0752 ms. That it holds
-for ray tracing too is an assumption, so conclusions are shown for factors of 1 to 8.
-"""
+"""Modelled times of the SPA on one clock, and how sure it is: CLOCK tells."""
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -34,19 +28,14 @@ CLOCK = (f"modelled, one clock: the budget's cycles of 100 ns times {FACTOR:.2f}
 
 
 def host_model():
-    """What a call of the host takes: {'setup_ms', 'rotation_ms', 'words_per_s': (least, most)}.
-
-    From the printed 2 and 12 ms (Table 4, 2 and 34 rotations) and 140 ms (Table 2, 256 x 256 pixels of 3 words), each
-    rounded to 1 ms.
-    """
+    """What a call of the host takes, (least, most), from printed ms: of 2 and 34 rotations, of 256 x 256 x 3 words."""
     few, many = 2, 34
     few_ms, many_ms, image_ms = (np.array([value - ROUNDING, value + ROUNDING]) for value in
                                  (papers.EXCHANGE_0_MS, papers.EXCHANGE_16_MS, papers.IMAGE_MS))
     # few_ms = setup + 2 r and many_ms = setup + 34 r give setup = (34 few_ms - 2 many_ms) / 32.
     setup = (many * few_ms - few * many_ms[::-1]) / (many - few)
     rotation = (many_ms - few_ms[::-1]) / (many - few)
-    words = 3 * papers.SIZE**2
-    rate = 1e3 * words / (image_ms - setup[::-1])[::-1]
+    rate = 3e3 * papers.SIZE**2 / (image_ms - setup[::-1])[::-1]
     return {"setup_ms": tuple(setup), "rotation_ms": tuple(rotation), "words_per_s": tuple(rate)}
 
 

@@ -19,12 +19,11 @@ Are random objects slower than even ones, is it for their copies, and why does t
 - In all three the outermost spheres touch the sides of one cube, so that all have the same voxels. Registration takes
   each for larger by up to a 16th of a voxel's side, for the rounding of rays from afar; even spheres and those moved
   keep that far from the sides of their voxels where they have the room.
-- After +- stands the half width of a 95 % confidence interval over the random scenes, by Student's t. Random is slower
-  where the whole interval of random over even lies above 1, else not slower where it lies below 1.02; the claim is
-  reproduced where all numbers of objects are slower, not reproduced where none is and half of them or more are not, and
-  where some are and some are not it cannot be told. Asynchronous is the machine that they describe, simulated packet by
-  packet: two tasks a node, links that carry while nodes compute, finite buffers. A claim is judged by it; overlapped
-  and stepwise, where nothing or everything waits, stand next to it.
+- Random is slower where the whole interval of random over even lies above 1, else not slower where it lies below 1.02;
+  the claim is reproduced where all numbers of objects are slower, not reproduced where none is and half of them or more
+  are not. It is judged by the asynchronous machine, the one that they describe, simulated packet by packet: two tasks a
+  node, links that carry while nodes compute, finite buffers; overlapped and stepwise, where nothing or everything
+  waits, stand next to it.
 - How deep primary rays go is counted in a render without lights.
 - Why time grows less than the objects, from the fewest to the most of them, overlapped: objects over time is the
   product of four ratios. Voxels that all rays enter; tests in a voxel, over the objects; the work of all nodes, over
@@ -94,8 +93,8 @@ def objects(lab, scenes):
     growth = [(kind, protocol, growth_of(runs[COUNTS[0], kind, protocol], runs[COUNTS[-1], kind, protocol]))
               for protocol in PROTOCOLS for kind in (EVEN, RANDOM)]
     depths, words = pd.DataFrame(depths), pd.DataFrame(words)
-    more = (["The scenes that were named are not in it: the study makes its own, as the scenes of Yoshitani & Yamazaki "
-             "were."] if scenes else [])
+    more = ["The scenes that were named are not in it: the study makes its own, as the scenes of Yoshitani & Yamazaki "
+            "were."] if scenes else []
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
                  "words": papers.RAY_WORDS, "seeds": SEEDS, "objects": list(COUNTS)},
                 findings_of(runs, rows, ratios, growth, depths, words) + more,
@@ -110,7 +109,7 @@ def row_of(key, runs):
     count, kind, protocol = key
     columns = ("copies", "tests a ray", "steps a ray", "returns", "rays thrown away", "u")
     row = {"objects": count, "kind": kind, "protocol": protocol, "scenes": len(runs),
-           **{column: np.mean([run.row([column])[column] for run in runs]) for column in columns}}
+           **pd.DataFrame([run.row(columns) for run in runs]).mean()}
     for time in TIMES:
         e = estimate([getattr(run, f"{time}_ms") for run in runs])
         row[f"{time} (ms)"], row[f"{time} +- (ms)"] = e.mean, e.half
@@ -232,20 +231,16 @@ def finding_of_growth(kind, protocol, rows):
             f"{estimate(rows['time']).text(2)} times the time, {estimate(rows['objects / time']).text(2)} times less "
             f"than in proportion. As a product: {mean['fewer voxels a ray']:.2f} as rays go through fewer voxels, "
             f"{mean['tests a voxel grow less']:.2f} as a voxel's tests grow less than the objects, "
-            f"{mean['fixed costs']:.2f} for what does not depend on objects, "
-            f"{mean['one node' + chr(39) + 's bound']:.2f} for what one node or link holds up.")
+            f"{mean['fixed costs']:.2f} for what does not depend on objects, {mean.iloc[-1]:.2f} for what one node or "
+            "link holds up.")
 
 
 def tables_of(rows, ratios, growth, depths, words):
     spread = ratios[["objects", "kind", "protocol"]].copy()
     for time in TIMES:
         spread[time], spread[f"{time} +-"] = [e.mean for e in ratios[time]], [e.half for e in ratios[time]]
-    factors = []
-    for kind, protocol, some in growth:
-        mean = some.mean().to_dict()
-        head = {"kind": kind, "protocol": protocol, "objects": mean.pop("objects"), "time": mean.pop("time"),
-                "objects / time": mean.pop("objects / time"), "+-": estimate(some["objects / time"]).half}
-        factors.append({**head, **mean})
+    factors = pd.DataFrame([{"kind": kind, "protocol": protocol, **some.mean()} for kind, protocol, some in growth])
+    factors.insert(5, "+-", [estimate(some["objects / time"]).half for *_, some in growth])
     return [Table("objects", "Time and work for each number of objects", rows),
             Table("objects-ratios", "Random over even", spread),
             Table("objects-growth", "Why time grows less than the objects: objects / time as a product", factors),

@@ -73,11 +73,10 @@ def measure(renders, device, enough_s=ENOUGH_S):
     trials = {ranks: ([], None) for ranks in renders}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():
-            if sum(seconds) >= enough_s:
-                continue
-            report = render_on_ranks(ranks, renders[ranks])
-            s = report["measured"]["render_s"]
-            trials[ranks] = (seconds + [s], report if not seconds or s < min(seconds) else best)
+            if sum(seconds) < enough_s:
+                report = render_on_ranks(ranks, renders[ranks])
+                s = report["measured"]["render_s"]
+                trials[ranks] = (seconds + [s], report if not seconds or s < min(seconds) else best)
     return trials
 
 
@@ -141,8 +140,7 @@ def ranks(lab, scenes):
     return Page({"scene": on_ring.name, "torus_scene": on_torus.name, "size": size, "torus_size": size,
                  "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": ENOUGH_S, "alpha_s": ping["alpha_s"],
                  "beta_s_per_byte": ping["beta_s_per_byte"]},
-                [*(finding_of_machine(summary, name) for name in ("ring", "torus")), finding_of_checks(checks),
-                 finding_of_scaling(scaling), finding_of_others(others), finding_of_network(ping)],
+                findings_of_model(summary, checks) + findings_of_measures(scaling, others, ping),
                 [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None,
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
@@ -196,50 +194,41 @@ def summary_of(key, some):
             "speed-up": best["speed-up"]}
 
 
-def finding_of_machine(summary, machine):
-    some = summary[summary["machine"] == machine]
-    halves = ", ".join(f"{'no number of' if pd.isna(r['half at (ranks)']) else int(r['half at (ranks)'])} ranks "
-                       f"({r['network']})" for _, r in some.iterrows())
-    fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
-                        for _, r in some.iterrows())
-    return (f"{machine}: communication takes half of the time on {halves}. The fewest seconds are had on so many "
-            f"ranks: {fastest}.")
-
-
-def finding_of_checks(checks):
-    more = checks[checks["ranks"] > 1]
+def findings_of_model(summary, checks):
+    findings, more = [], checks[checks["ranks"] > 1]
+    for machine, some in summary.groupby("machine", sort=False):
+        halves = ", ".join(f"{'no number of' if pd.isna(r['half at (ranks)']) else int(r['half at (ranks)'])} ranks "
+                           f"({r['network']})" for _, r in some.iterrows())
+        fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
+                            for _, r in some.iterrows())
+        findings.append(f"{machine}: communication takes half of the time on {halves}. The fewest seconds are had on "
+                        f"so many ranks: {fastest}.")
 
     def text(some):
         ratio = some["predicted / measured"]
         return f"{ratio.min():.2f} to {ratio.max():.2f}" if len(some) else "(none)"
 
     shared = more["cores"] < more["ranks"]
-    return (f"On the ranks that can be measured here the prediction is {text(more[~shared])} times the measured time "
-            f"where each rank has a core, and {text(more[shared])} times where ranks share cores; the minimum of up to "
-            f"{TURNS} renders each.")
+    return findings + [
+        f"On the ranks that can be measured here the prediction is {text(more[~shared])} times the measured time where "
+        f"each rank has a core, and {text(more[shared])} times where ranks share cores; the minimum of up to {TURNS} "
+        "renders each."]
 
 
-def finding_of_scaling(scaling):
-    def text(machine, name):
-        some = scaling[(scaling["machine"] == machine) & (scaling["scaling"] == name) & (scaling["ranks"] > 1)]
-        return ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}" for _, r in some.iterrows())
-
-    kinds = [f"{machine}, {name}: {text(machine, name)}" for machine in ("ring", "torus") for name in ("strong", "weak")]
-    return f"Measured efficiency against one rank of one core: {'; '.join(kinds)}."
-
-
-def finding_of_others(share):
-    if share <= QUIET:
-        return f"While this was measured other programs had {100 * share:.1f} % of this host's processors."
-    return (f"While this was measured other programs had {100 * share:.0f} % of this host's processors: ranks waited "
-            "for one another, and times of several ranks say little. To be repeated when the host is quiet.")
-
-
-def finding_of_network(ping):
+def findings_of_measures(scaling, share, ping):
+    """share: of the host's processors, what other programs had."""
+    kinds = [f"{machine}, {name}: " + ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}"
+                                                for _, r in some[some["ranks"] > 1].iterrows())
+             for (machine, name), some in scaling.groupby(["machine", "scaling"], sort=False)]
+    others = (f"While this was measured other programs had {100 * share:.1f} % of this host's processors." if share <=
+              QUIET else
+              f"While this was measured other programs had {100 * share:.0f} % of this host's processors: ranks waited "
+              "for one another, and times of several ranks say little. To be repeated when the host is quiet.")
     first, last = ping["messages"][0], ping["messages"][-1]
-    return (f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
+    return [f"Measured efficiency against one rank of one core: {'; '.join(kinds)}.", others,
+            f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
             f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte by the fit; one byte took {1e6 * first['seconds']:.2f} us, "
-            f"and 4 MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s.")
+            f"and 4 MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s."]
 
 
 def tables_of(rows, checks, scaling, summary, networks, ping):

@@ -81,7 +81,7 @@ def simgrid(lab, scenes):
               f"{row['overlapped']:.1f} ms if nothing waited and {row['stepwise']:.1f} ms step by step."
               for _, row in whole.iterrows()]
     return Page({"scene": scene.name, "size": size, "nodes": "4x4x4", "buffer": BUFFER, "goal": GOAL},
-                [finding_of_goal(rows), finding_of_effects(rows), *bounds],
+                findings_of(rows) + bounds,
                 [Comparison(f"{row['torus']}, {row['inject']}, the whole machine, ours / SimGrid", "", None,
                             row["raya (ms)"] / row["SimGrid (ms)"], "modelled, asynchronous")
                  for _, row in whole.iterrows()],
@@ -93,21 +93,17 @@ def simgrid(lab, scenes):
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
 
 
-def finding_of_goal(rows):
+def findings_of(rows):
+    """Whether the two are near one another; the effect, other than computing itself, that takes most."""
     worst = rows.loc[rows["difference (%)"].abs().idxmax()]
     most, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
-    if most <= GOAL:
-        return (f"On all {len(rows)} machines the two times lie within {GOAL} % of one another; the most that they "
-                f"differ is {most:.2g} % ({where}).")
-    return (f"The two times are not within {GOAL} % of one another on all {len(rows)} machines: they differ by "
+    near = (f"On all {len(rows)} machines the two times lie within {GOAL} % of one another; the most that they differ "
+            f"is {most:.2g} % ({where})." if most <= GOAL else
+            f"The two times are not within {GOAL} % of one another on all {len(rows)} machines: they differ by "
             f"{most:.2f} % on {where}.")
-
-
-def finding_of_effects(rows):
-    """The effect, other than computing itself, that takes most, and how far the two are apart in it."""
     more = rows[rows["machine"].str.startswith("+")]
     ours, theirs = more["raya, the effect (ms)"], more["SimGrid, the effect (ms)"]
     i = ours.idxmax()
-    return (f"Of the effects next to computing the largest is that {more['machine'][i][2:]} ({more['torus'][i]}, "
+    return [near, f"Of the effects next to computing the largest is that {more['machine'][i][2:]} ({more['torus'][i]}, "
             f"inject {more['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. In no "
-            f"effect are the two more than {(ours - theirs).abs().max():.3f} ms apart.")
+            f"effect are the two more than {(ours - theirs).abs().max():.3f} ms apart."]
