@@ -48,8 +48,7 @@ def efficiencies(image):
 
 @study("scale", one_scene=True)
 def scale(lab, scenes):
-    scene = one_of(scenes)
-    side = lab.size(1024)
+    scene, side = one_of(scenes), lab.size(1024)
     ensemble = lab.ensemble(scene, side, "none", VIEWS)
     image = ensemble.picture.trace
     rows = efficiencies(image)

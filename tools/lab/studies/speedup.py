@@ -42,8 +42,7 @@ def all_of(image):
 
 @study("fig9", one_scene=True)
 def fig9(lab, scenes):
-    scene = one_of(scenes)
-    size = lab.size(256)
+    scene, size = one_of(scenes), lab.size(256)
     ensemble = lab.ensemble(scene, size)
     picture = ensemble.picture.trace
     sizes = [picture] + [lab.costs(scene, side).trace for side in ((512, 1024) if size == 256 else ())]
@@ -95,8 +94,8 @@ def comparisons_of(rows, grids, mean, ratios, fewer, more):
     ratio, few = estimate(ratios), estimate(fewer)
     return [Comparison(pes + "p = 16", "", papers.SPEEDUP_16, last["p = 16, cyclic fold"],
                        "the paper's stands in its abstracts"),
-            Comparison(pes + "p = 16, mean of views", "", papers.SPEEDUP_16, mean["p = 16"],
-                       half_width=mean["p = 16, +-"]),
+            Comparison(pes + "p = 16, mean of views", "", papers.SPEEDUP_16, mean["p = 16"], "", False,
+                       mean["p = 16, +-"]),
             Comparison(pes + "p = 0", "", papers.SPEEDUP_0, last["p = 0, cyclic fold"],
                        "centre at 256 x 256 is calibrated on its u(0)", derived=True),
             Comparison(pes + "p = 0, mean of views", "", papers.SPEEDUP_0, mean["p = 0"], derived=True,
@@ -190,9 +189,9 @@ def plots_of(rows, grids, means, in_paper):
     folds = [Series(f"{name}, {fold} fold", pes, rows[f"{name}, {fold} fold"] / pes)
              for name in ("p = 16", "p = 0") for fold in ("cyclic", "block")]
     return [Plot("fig9", "Speed-up against the number of PEs, cyclic fold", "PEs", "speed-up",
-                 [Series("ideal", pes, pes)] +
-                 [Series(label, pes, rows[f"{name}, cyclic fold"]) for name, label in labels.items()] +
-                 [Series("2-D, A x A PEs", squares, grids.values(), "points")] + (paper if in_paper else [])),
+                 [Series("ideal", pes, pes),
+                  *(Series(label, pes, rows[f"{name}, cyclic fold"]) for name, label in labels.items()),
+                  Series("2-D, A x A PEs", squares, grids.values(), "points"), *(paper if in_paper else [])]),
             Plot("fig9-views", "Speed-up against the number of PEs, mean of the views", "PEs", "speed-up",
                  [Series(label, some["P"], some[name], half_widths=some[f"{name}, +-"])
                   for name, label in labels.items()]),

@@ -49,15 +49,13 @@ def device_seconds(lab, scene, size, form):
 
 @study("table2", one_scene=True)
 def table2(lab, scenes):
-    scene = one_of(scenes)
-    size = lab.size(256)
+    scene, size = one_of(scenes), lab.size(256)
     array, one = run_on_spa(lab, scene, size, size, 16 % size), run_on_spa(lab, scene, size, 1, 0)
     device = lab.session.device["name"]
     here = {"reference, 64 bits, 1 thread": reference_seconds(scene, size),
             f"{device}, fp32": device_seconds(lab, scene, size, "fp32"),
             f"{device}, {SPA['format']}": device_seconds(lab, scene, size, SPA["format"])}
-    reference, fp32, spa22 = here.values()
-    in_paper = papers.is_papers(scene.name, size)
+    (reference, fp32, spa22), in_paper = here.values(), papers.is_papers(scene.name, size)
     speedup = array.report["load"]["trace"]["speedup"]
     balance = job_gain(papers.ONE_PE_COMPUTE_MS, papers.ONE_PE_COMPUTE_MS / speedup)
     factors = pd.DataFrame({"factor": FACTORS, "1 PE: compute (ms)": [one.time(f)["compute"] for f in FACTORS],

@@ -9,8 +9,7 @@ Does the balance of one picture hold while the camera turns, and does the offset
   p = sqrt(P) and each frame's own best offset, which no choice ahead can reach.
 - Frames of one turn resemble each other, so intervals are over turns that start from random views of the scene: the
   camera at the same distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above what it looks at.
-- That p = n balances better than p = 0 is reproduced where it does so in every frame of every turn, and not reproduced
-  where it does not in one.
+- That p = n balances better than p = 0 is reproduced where it does so in every frame of every turn.
 """
 import numpy as np
 import pandas as pd
