@@ -30,7 +30,6 @@ class Costs:
     supersample: np.ndarray  # of supersampling; None without
     report: dict
     job_words: int  # what a PE holds of the scene
-    device_s: float  # measured: tracing
 
     @property
     def recomputed(self):
@@ -86,10 +85,8 @@ class Laboratory:
             costs.label = scene.name
             return costs
         result = self.render(scene, cost=True, **options)
-        costs = Costs(scene.name, result.costs["trace"].copy(), None, result.report, result.job_words,
-                      result.device_s)
-        if antialias == "supersample":
-            costs.supersample = result.costs["supersample"].copy()
+        images = {name: image.copy() for name, image in result.costs.items()}
+        costs = Costs(scene.name, images["trace"], images.get("supersample"), result.report, result.job_words)
         file.write_bytes(pickle.dumps(costs))
         return costs
 

@@ -11,17 +11,15 @@ From how many objects on does a grid or a BVH pay, which of them, and how does t
   takes no further; minimum and median of the samples.
 - Without an accelerator, a render that would take longer than {bearable} s is left out: predicted from the scene's rays
   and objects, at what a test took in the scene before.
-- Tests: of a ray of any kind with an object. Steps: voxels that rays enter, or nodes of the BVH. Memory: what a PE
-  holds of the scene and of grid or BVH, words of 4 bytes. Each is counted; build is measured: to make the grid or BVH,
-  on the host.
+- Counted: tests, of a ray of any kind with an object; steps, voxels that rays enter, or nodes of the BVH; memory, what
+  a PE holds of the scene and of grid or BVH. Build is measured: to make the grid or BVH, on the host.
 - Where several scenes differ in their seed alone, a figure is their mean. A ratio of two ways is taken in each scene,
   then the mean; of a single scene, in each turn. A way counts as faster where the whole interval says so; after a
   single turn, where the ratio does.
 - Growth: the exponent of objects in what a ray takes, by least squares of logarithms over scenes of {fitted} objects
   and more, for each seed.
-- Embree 3: the same rays (the same Whitted ray tracing, tools/embree) on all cores, the faster of asking ray by ray and
-  sixteen in step; its loop over the picture alone, three single pictures a turn. Rays are counted on both sides; where
-  they differ by more than one in a thousand there is no ratio.
+- Embree 3: the same rays (tools/embree) on all cores, the faster of asking ray by ray and sixteen in step; its loop
+  over the picture alone, three pictures a turn. Where rays differ by more than one in a thousand there is no ratio.
 """
 import math
 
@@ -240,8 +238,7 @@ def finding_of_two(runs, way, other):
     some = ratios(runs, way, other)
     if not some:
         return f"No scene has a ratio of {way} to {other}."
-    faster = sum(one["times"].least > 1 for one in some)
-    slower = sum(one["times"].most < 1 for one in some)
+    faster, slower = (sum(holds) for holds in zip(*((e.least > 1, e.most < 1) for e in (one["times"] for one in some))))
     rest = len(some) - faster - slower
     return (f"{other} is faster than {way} in {faster} of {len(some)}, slower in {slower}"
             f"{f', not to be separated in {rest}' if rest else ''}; time of {way} over {other}: {ratios_text(some)}.")

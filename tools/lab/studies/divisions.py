@@ -24,14 +24,11 @@ SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a 
                          "least measured time")}
 
 
-def even_scenes():
-    return [raya.generate.uniform(1 << k, near_cube(1 << k)).renamed(f"{1 << k} objects") for k in (6, 8, 9, 10)]
-
-
 @study("divisions")
 def divisions(lab, scenes):
     size, from_paper = lab.size(96), not scenes
-    cases = [{"scene": scene, "cut": near_cube(count)} for scene in scenes or even_scenes() for count in DIVISIONS]
+    even = [raya.generate.uniform(n, near_cube(n)).renamed(f"{n} objects") for n in (64, 256, 512, 1024)]
+    cases = [{"scene": scene, "cut": near_cube(count)} for scene in scenes or even for count in DIVISIONS]
     rows = swept(cases, lambda scene, cut: run_in_one_pe(lab, scene, size, cut, runs=5), COLUMNS)
     by_scene = [some for _, some in rows.groupby("scene", sort=False)]
     settings = [some[["scene", "objects"]].iloc[0].to_dict() for some in by_scene]

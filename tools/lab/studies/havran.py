@@ -10,6 +10,8 @@ Does our grid do what others' grids do on the same scenes?
   ends at the first object that is found to hide the light; objects are registered with a margin for rounding. What
   Havran & Sixta do in each of these, and whether they count the first voxel, is not known to us.
 """
+import math
+
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, series_by, study
@@ -54,7 +56,7 @@ def havran(lab, scenes):
 
 
 def row_of(run, grid):
-    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, grid), (None, None))
+    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, grid), (math.nan, math.nan))
     return {"scene": run.scene, "sides": run.sides, "tests": run.tests_per_ray, "steps": run.steps_per_ray,
             "beyond": (run.steps - run.events["walks"]) / run.rays, "their tests": tests, "their steps": steps}
 
@@ -76,10 +78,8 @@ def finding_of(known, what, column):
 
 def finding_of_finer(coarse, fine):
     """What a finer grid of one scene does, in ours and in theirs: free of how a ray or a test is counted."""
-    theirs = ""
-    if not pd.isna(coarse["their tests"]) and not pd.isna(fine["their tests"]):
-        theirs = (f"; theirs to {fine['their tests'] / coarse['their tests']:.2f} and "
-                  f"{fine['their steps'] / coarse['their steps']:.2f}")
-    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests fall to "
-            f"{fine['tests'] / coarse['tests']:.2f}, steps grow to {fine['steps'] / coarse['steps']:.2f} "
-            f"times{theirs}.")
+    tests, steps, *others = (f"{fine[name] / coarse[name]:.2f}" for name in ("tests", "steps", "their tests",
+                                                                             "their steps"))
+    theirs = "" if "nan" in others else f"; theirs to {others[0]} and {others[1]}"
+    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests fall to {tests}, steps grow to "
+            f"{steps} times{theirs}.")

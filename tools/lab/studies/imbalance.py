@@ -35,8 +35,7 @@ GOOD = 0.9  # ours: the part of all that an offset of 0..n gains over p = 0, fro
 def page_of(name, lab, scenes, first):
     settings, picture, views = balance_pass(lab, scenes, first)
     scene, size = settings["scene"], settings["size"]
-    offsets = range(size)
-    n = round(size**0.5)  # the paper's best
+    offsets, n = range(size), round(size**0.5)  # n: the paper's best
     u = raya.imbalances(picture, size, offsets)
     of_views = np.array([raya.imbalances(view, size, offsets) for view in views])  # [view, offset]
     means = [estimate(column) for column in of_views.T]

@@ -69,10 +69,9 @@ def comparisons_of(own_u, u, in_paper):
     figures = papers.IMBALANCE_0, papers.IMBALANCE_16
     remarks = ("calibrated on: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
     mean_u = [estimate(some) for some in u]
-    return with_paper(in_paper, [Comparison(f"u({p})", "", *some, True) for p, *some in zip((0, 16), figures, own_u,
-                                                                                        remarks)] +
-                      [Comparison(f"u({p}), mean of views", "", figure, mean.mean, "", True, mean.half)
-                       for p, figure, mean in zip((0, 16), figures, mean_u)])
+    own = [Comparison(f"u({p})", "", *some, True) for p, *some in zip((0, 16), figures, own_u, remarks)]
+    return with_paper(in_paper, own + [Comparison(f"u({p}), mean of views", "", figure, mean.mean, "", True, mean.half)
+                                       for p, figure, mean in zip((0, 16), figures, mean_u)])
 
 
 def claims_of(place, of_views):
@@ -89,8 +88,7 @@ def claims_of(place, of_views):
 
 def plots_of(name, scene, phase, rows, own, views):
     some = rows[rows["PE"] % max(len(rows) // 64, 1) == 0]
-    labels = ("p = 0, column split", "p = 16, cyclic mapping")
-    mean_line = Series("mean", [0, len(rows) - 1], [1, 1])
+    labels, mean_line = ("p = 0, column split", "p = 16, cyclic mapping"), Series("mean", [0, len(rows) - 1], [1, 1])
     return [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
                  [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
             Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {views} views", "PE", "load / mean load",

@@ -113,19 +113,16 @@ def row_of(key, runs):
     for time in TIMES:
         e = estimate([getattr(run, f"{time}_ms") for run in runs])
         row[f"{time} (ms)"], row[f"{time} +- (ms)"] = e.mean, e.half
-    row["busiest node computes (ms)"] = np.mean([run.compute_ms for run in runs])
-    row["the root alone (ms)"] = np.mean([run.root_ms for run in runs])
-    return row
+    return {**row, "busiest node computes (ms)": np.mean([run.compute_ms for run in runs]),
+            "the root alone (ms)": np.mean([run.root_ms for run in runs])}
 
 
 def ratio_of(runs, count, kind, protocol):
     """Random scenes over the even one of as many objects: times as long."""
-    even = runs[count, EVEN, protocol][0]
-    row = {"objects": count, "kind": kind, "protocol": protocol}
-    for time in TIMES:
-        row[time] = estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms")
-                              for run in runs[count, kind, protocol]])
-    return row
+    even, some = runs[count, EVEN, protocol][0], runs[count, kind, protocol]
+    return {"objects": count, "kind": kind, "protocol": protocol,
+            **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run in some])
+               for time in TIMES}}
 
 
 def growth_of(first, last):
@@ -197,8 +194,8 @@ def findings_of(runs, rows, ratios, growth, depths, words):
     longer = words["overlapped (ms)"].values / even["overlapped (ms)"][words["objects"]].values
     more = ", ".join(f"{w['words a ray']:.0f} words take {times:.2f} times as long ({w['objects']:.0f} objects)"
                      for times, (_, w) in zip(longer, words.iterrows()))
-    return [finding_of_random(ratios, PAPER), finding_of_root(rows, PAPER), finding_of_random(ratios, OWN),
-            finding_of_root(rows, OWN), copies, *(finding_of_growth(*one) for one in growth),
+    return [*findings_of_protocol(rows, ratios, PAPER), *findings_of_protocol(rows, ratios, OWN), copies,
+            *(finding_of_growth(*one) for one in growth),
             f"A primary ray in the box goes through {va:.2f} voxels where there are {a['objects']} even objects and "
             f"through {vb:.2f} where there are {b['objects']}, {va / vb:.2f} times fewer; {a[end]:.0f} % and "
             f"{b[end]:.0f} % end in the first one.",
@@ -208,21 +205,16 @@ def findings_of(runs, rows, ratios, growth, depths, words):
             f"Larger ray packets than the {papers.RAY_WORDS} words of Table 1, overlapped: {more}."]
 
 
-def finding_of_random(ratios, protocol):
-    some = of(ratios, RANDOM, protocol)
-    return (f"Protocol of {protocol}: random over even is {texts_of(some, 'asynchronous')} without supersteps, "
-            f"{texts_of(some, 'overlapped')} overlapped, {texts_of(some, 'stepwise')} stepwise (objects in brackets).")
-
-
-def finding_of_root(rows, protocol):
-    even = of(rows, EVEN, protocol)
+def findings_of_protocol(rows, ratios, protocol):
+    some, even = of(ratios, RANDOM, protocol), of(rows, EVEN, protocol)
+    yield (f"Protocol of {protocol}: random over even is {texts_of(some, 'asynchronous')} without supersteps, "
+           f"{texts_of(some, 'overlapped')} overlapped, {texts_of(some, 'stepwise')} stepwise (objects in brackets).")
     bound = even[even["the root alone (ms)"] >= even["overlapped (ms)"]]
-    if not len(bound):
-        return f"Protocol of {protocol}: in no even scene does the machine wait for the root."
     ms = bound["the root alone (ms)"]
-    return (f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the machine waits for "
-            f"the root, {ms.min():.0f} to {ms.max():.0f} ms; there the time is that of making rays and taking in "
-            "returns, not of the objects.")
+    yield (f"Protocol of {protocol}: in no even scene does the machine wait for the root." if not len(bound) else
+           f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the machine waits for "
+           f"the root, {ms.min():.0f} to {ms.max():.0f} ms; there the time is that of making rays and taking in "
+           "returns, not of the objects.")
 
 
 def finding_of_growth(kind, protocol, rows):

@@ -14,9 +14,8 @@ How many MPI ranks are worth having, and from where on do they talk more than th
   cycles, all else goes with the nodes of the largest brick; faces take alpha for each message and beta for each byte
   that a rank sends or receives, whichever is more, of the rank with most; the status of all nodes goes to every rank in
   log2 R rounds. Supersteps, cycles and words of links are counted in one render.
-- More than 512 ranks have a torus with a node for each, assumed: nodes are cut further, so supersteps grow with its
-  side, a node's cycles in one shrink with its voxel and its words with a face of that, and rank 0's host looks at so
-  many more nodes.
+- More than 512 ranks have a torus with a node for each, assumed: supersteps grow with its side, a node's cycles in one
+  shrink with its voxel and its words with a face of that, and rank 0's host looks at so many more nodes.
 - Times of the model do not include what commands to the device cost beyond one rank's, collisions of messages, or
   waiting for a rank that is late for another reason.
 - Networks: alpha and beta fitted to a ping-pong of `raya ping` (minimum of up to 300 turns for each of nine lengths, 1

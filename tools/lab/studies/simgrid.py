@@ -73,10 +73,9 @@ def simgrid(lab, scenes):
     rows = pd.DataFrame([row for links in ("torus3d", "torus2d") for inject in ("root", "all")
                          for row in rows_of(lab, scene, size, links, inject)])
     whole = rows[rows["machine"] == list(EFFECTS)[-1]]
-    series = []
-    for (shape, inject), some in rows.groupby(["torus", "inject"], sort=False):
-        series += [Series(f"{shape}, {inject}, raya", range(len(some)), some["raya (ms)"]),
-                   Series(f"{shape}, {inject}, SimGrid", range(len(some)), some["SimGrid (ms)"], "points")]
+    series = [Series(f"{shape}, {inject}, {who}", range(len(some)), some[f"{who} (ms)"], style)
+              for (shape, inject), some in rows.groupby(["torus", "inject"], sort=False)
+              for who, style in (("raya", "line"), ("SimGrid", "points"))]
     bounds = [f"{row['torus']}, inject {row['inject']}: the whole machine takes {row['raya (ms)']:.1f} ms, between "
               f"{row['overlapped']:.1f} ms if nothing waited and {row['stepwise']:.1f} ms step by step."
               for _, row in whole.iterrows()]

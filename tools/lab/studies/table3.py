@@ -106,10 +106,9 @@ def plot_of(runs, with_tracing, in_paper):
         t = runs.times(factor)[:17]
         y = t["total_ms"] if with_tracing else t["ring_ms"] + t["smooth_ms"]
         series.append(Series("the clock's factor" if factor == FACTOR else f"factor {factor}", t["offset"], y))
-    printed = [papers.FILTERED_0_MS, papers.FILTERED_16_MS] if with_tracing else [papers.FILTER_0_MS,
-                                                                                  papers.FILTER_16_MS]
+    name, title, printed = (
+        ("table3-total", "Ray tracing and filter", [papers.FILTERED_0_MS, papers.FILTERED_16_MS]) if with_tracing else
+        ("table3-filter", "Filtering", [papers.FILTER_0_MS, papers.FILTER_16_MS]))
     if in_paper:
         series.append(Series("Kohata & Ito", [0, 16], printed, "paper"))
-    return Plot("table3-total" if with_tracing else "table3-filter",
-                "Ray tracing and filter against the offset" if with_tracing else "Filtering against the offset",
-                "offset p (pixels)", "time (modelled ms)", series)
+    return Plot(name, f"{title} against the offset", "offset p (pixels)", "time (modelled ms)", series)
