@@ -7,7 +7,6 @@ import os
 import re
 import tempfile
 from collections import Counter
-from functools import partial
 from pathlib import Path
 
 import jinja2
@@ -165,9 +164,9 @@ def verdict_sentences(pages):
         sentence([c for c in claims if c.paper == paper], f"of {paper}") for paper in papers]
 
 
-def claims_with(pages, verdict):
+def not_reproduced(pages):
     return [f'{c.paper}, {c.place}: "{c.words}" {c.why}' for page in pages for c in page.claims
-            if c.verdict == verdict]
+            if c.verdict == NOT_REPRODUCED]
 
 
 def prose(text):
@@ -207,8 +206,8 @@ def environment():
     made.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
     made.globals.update({one.__name__: one for one in (
         cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
-        title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS,
-        MOST_ROWS=MOST_ROWS, not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
+        not_reproduced, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
+        OPEN_ROWS=OPEN_ROWS, MOST_ROWS=MOST_ROWS)
     return made
 
 

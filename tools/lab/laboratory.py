@@ -3,6 +3,7 @@ import hashlib
 import pickle
 from collections import namedtuple
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -58,13 +59,10 @@ class Laboratory:
 
     def __init__(self, folder, size=None, network=None, **options):
         self._folder, self._size, self.network, self._options = Path(folder), size, network, options
-        self._session = None
 
-    @property
+    @cached_property
     def session(self):
-        if self._session is None:
-            self._session = raya.Session(self._options.get("device") or "")
-        return self._session
+        return raya.Session(self._options.get("device") or "")
 
     def size(self, default):
         return self._size or default

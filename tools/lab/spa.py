@@ -39,12 +39,6 @@ def host_model():
     return {"setup_ms": tuple(setup), "rotation_ms": tuple(rotation), "words_per_s": tuple(rate)}
 
 
-def host_call_ms(model, words):
-    """(least, most) ms of a call that moves so many words through the host."""
-    (low, high), (slow, fast) = model["setup_ms"], model["words_per_s"]
-    return low + 1e3 * words / fast, high + 1e3 * words / slow
-
-
 @dataclass
 class SpaRun:
     """An image made on PEs of the SPA, or on the same PEs without a limit of memory where the scene does not fit."""

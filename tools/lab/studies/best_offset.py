@@ -38,14 +38,12 @@ class Choice:
         self.best, self.best_near = (self.times.loc[some.idxmin()] for some in (total, total[:self.root + 1]))
         sums = self.chosen_by.sum(0)
         self.chosen, self.chosen_near = int(sums.argmin()), int(sums[:self.root + 1].argmin())
+        self.time = estimate(self.judged_by[:, self.chosen])
         # The best offset, were computing so many times as dear.
         self.factors = ", ".join(dict.fromkeys(
             str((self.times["ring_ms"] + f / FACTOR * (total - self.times["ring_ms"])).idxmin()) for f in FACTORS))
 
     method = property(lambda c: "without anti-aliasing" if c.antialias == "none" else f"with --antialias {c.antialias}")
-
-    def time_of(self, offset):
-        return estimate(self.judged_by[:, offset])
 
     def longer(self, offset, confidence=0.95):
         """By how many % longer an offset takes than the chosen one, in the views by which nothing was chosen."""
@@ -93,7 +91,7 @@ def views_finding(c):
     picture = int(c.best["offset"])
     near, root, zero, own = (c.longer(offset).text(1) for offset in (c.chosen_near, c.root, 0, picture))
     return (f"{c.scene}, {c.pes} PEs, {c.method}: of {len(c.chosen_by) + len(c.judged_by)} views one half chooses p = "
-            f"{c.chosen}; it takes {c.time_of(c.chosen).text(1)} ms in the other half. There the best of 0..sqrt(P), p "
+            f"{c.chosen}; it takes {c.time.text(1)} ms in the other half. There the best of 0..sqrt(P), p "
             f"= {c.chosen_near}, takes {near} % longer, p = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the "
             f"best for the scene's own picture, {own} %.")
 
@@ -137,7 +135,7 @@ def tables_of(every):
     views, best, offsets = [], [], []
     for c in every:
         head = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}
-        time, near, root, zero = (c.time_of(c.chosen), c.longer(c.chosen_near), c.longer(c.root), c.longer(0))
+        time, near, root, zero = (c.time, c.longer(c.chosen_near), c.longer(c.root), c.longer(0))
         views.append({**head, "best p": c.chosen, "time (ms)": time.mean, "time, +- (ms)": time.half,
                       "best p of 0..sqrt(P)": c.chosen_near, "it takes longer (%)": near.mean, "it, +- (%)": near.half,
                       "p = sqrt(P) takes longer (%)": root.mean, "p = sqrt(P), +- (%)": root.half,

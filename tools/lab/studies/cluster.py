@@ -5,8 +5,7 @@ What do the tables come to, on one clock, for scenes that are as uneven and as h
 - {scenes} scenes at {size} x {size} on {pes} PEs of the SPA, a PE for each column. By default those of `raya generate
   cluster`, seeds {seeds}: seven spheres above a floor, one light.
 - Sought were, for the mean of many seeds: u(0) = 1.58, 17 % of the pixels recomputed and some 1,520 budget cycles a
-  pixel, which by this clock are the printed 64,800 ms of one PE. scenes/README.md describes the search. All else was
-  left free, u(16) above all.
+  pixel, the printed 64,800 ms of one PE (see scenes/README.md). All else was left free, u(16) above all.
 - Each figure of Kohata & Ito is of one picture: it is reproduced where it lies in the scenes' prediction interval (see
   Fig. 8).
 """

@@ -44,7 +44,7 @@ def havran(lab, scenes):
     known = rows.dropna(subset="their tests")
     published = [Series("Havran & Sixta", known["their steps"], known["their tests"], "paper")] if len(known) else []
     return Page({"size": size, "bounces": BOUNCES, "sampling": "corners", "format": "fp32"},
-                [finding_of(known, "Tests a ray", "tests"), finding_of(known, "Steps a ray", "steps"),
+                [*(finding_of(known, what) for what in ("tests", "steps")),
                  *(finding_of_finer(a, b) for (_, a), (_, b) in zip(rows.iterrows(), rows[1:].iterrows())
                    if a["scene"] == b["scene"])],
                 [c for _, row in rows.iterrows() for c in comparisons_of(row)],
@@ -68,12 +68,12 @@ def comparisons_of(row):
                      f"{row['beyond']:.2f} without the first voxel of each walk")
 
 
-def finding_of(known, what, column):
+def finding_of(known, what):
     if not len(known):
-        return f"{what}: none were published for these grids."
-    ratios = ", ".join(f"{row[column] / row[f'their {column}']:.2f} ({row['scene']} {row['sides']})"
+        return f"{what.capitalize()} a ray: none were published for these grids."
+    ratios = ", ".join(f"{row[what] / row[f'their {what}']:.2f} ({row['scene']} {row['sides']})"
                        for _, row in known.iterrows())
-    return f"{what} are {ratios} times those that Havran & Sixta publish."
+    return f"{what.capitalize()} a ray are {ratios} times those that Havran & Sixta publish."
 
 
 def finding_of_finer(coarse, fine):

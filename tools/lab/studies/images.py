@@ -50,7 +50,7 @@ def images(lab, scenes):
                 [claim_of_columns(every, columns, cyclic), claim_of_cyclic(every, cyclic)] if len(every) > 1 else [],
                 [table_of_groups(groups, columns, cyclic),
                  Table("images", "Imbalance and efficiency of each image", rows)],
-                [plot_of(rows, columns, cyclic, pes, p), plot_of_groups(groups, columns, cyclic)],
+                plots_of(rows, groups, columns, cyclic, pes, p),
                 ["Kohata & Ito tell of their images in words. Here every image has its figures, next to many views and "
                  "random scenes with intervals."], beside=papers.SPA,
                 words={"fewest": rows["objects"].min(), "most": rows["objects"].max(),
@@ -94,14 +94,12 @@ def claim_of_cyclic(every, cyclic):
 
 
 def table_of_groups(groups, columns, cyclic):
-    table = []
-    for label, rows in groups.items():
-        row = {"pictures": label, "number": len(rows)}
-        for name, column in (("p = 0", columns), ("cyclic", cyclic)):
-            mean = estimate(rows[column])
-            row.update({name: mean.mean, f"{name}, +-": mean.half, f"{name}, least": rows[column].min(),
-                        f"{name}, largest": rows[column].max()})
-        table.append(row)
+    table = pd.DataFrame({"pictures": list(groups), "number": [len(rows) for rows in groups.values()]})
+    for name, column in (("p = 0", columns), ("cyclic", cyclic)):
+        means = [estimate(rows[column]) for rows in groups.values()]
+        table[name], table[f"{name}, +-"] = [m.mean for m in means], [m.half for m in means]
+        for which, of in (("least", min), ("largest", max)):
+            table[f"{name}, {which}"] = [of(rows[column]) for rows in groups.values()]
     return Table("images-groups", "Mean efficiencies, with intervals of 95 %", table)
 
 
@@ -133,7 +131,7 @@ def comparisons_of(rows, columns, cyclic, pes):
             Comparison("highest of all, cyclic", "", None, rows[cyclic].max())]
 
 
-def plot_of(rows, columns, cyclic, pes, p):
+def plots_of(rows, groups, columns, cyclic, pes, p):
     """Scenes are numbered in the order of their first image, and named below the axis."""
     first = rows[rows["side (pixels)"] == rows["side (pixels)"].iloc[0]]
     names = [f"{i} {scene}" for i, scene in enumerate(first["scene"], 1)]
@@ -144,12 +142,8 @@ def plot_of(rows, columns, cyclic, pes, p):
     if pes == papers.PES and rows["scene"].iloc[0] == "centre":
         series.append(Series("Kohata & Ito, their worst image", [1, 1], [papers.EFFICIENCY_0, papers.EFFICIENCY_16],
                              "paper"))
-    return Plot("images", "Efficiency over the scenes", f"scene: {lines}", "efficiency", series)
-
-
-def plot_of_groups(groups, columns, cyclic):
-    """Efficiencies in ascending order: how many pictures have so little or less."""
-    series = [Series(f"{name}, {label}", 100 * np.arange(1, len(rows) + 1) / len(rows), np.sort(rows[column]), "steps")
-              for label, rows in groups.items() for name, column in (("cyclic", cyclic), ("p = 0", columns))]
-    return Plot("images-groups", "How many pictures are so efficient", "share of the pictures, ascending (%)",
-                "efficiency", series)
+    shares = [Series(f"{name}, {label}", 100 * np.arange(1, len(some) + 1) / len(some), np.sort(some[column]), "steps")
+              for label, some in groups.items() for name, column in (("cyclic", cyclic), ("p = 0", columns))]
+    return [Plot("images", "Efficiency over the scenes", f"scene: {lines}", "efficiency", series),
+            Plot("images-groups", "How many pictures are so efficient", "share of the pictures, ascending (%)",
+                 "efficiency", shares)]

@@ -9,28 +9,25 @@ Are random objects slower than even ones, is it for their copies, and why does t
   of the object come to them; a ray brings home one return of 6 words, from where its shadow ray ends. Raya: every node
   makes the primary rays that enter at its voxel, and is charged for those that it makes and discards; a ray packet has
   16 words; each term of a ray, its ambient light, a light or the background, is a return of 8.
-- The returns of a ray are moved apart, so that the image is the same bit for bit; by the protocol of Yoshitani &
-  Yamazaki they are charged as one message. What is shaded is charged where the ray hits, by either protocol.
+- The returns of a ray are moved apart, so that the image is the same; by the protocol of Yoshitani & Yamazaki they are
+  charged as one message. What is shaded is charged where the ray hits.
 - Even: every voxel holds as many spheres, each within its voxel.
 - Random: the even scene's spheres, their radii, surfaces, light and view, about centres drawn from the cube and moved
   into it where they stick out; {seeds} scenes.
-- Random, none astride: the random spheres moved, each by little more than its radius, until each lies within the voxel
-  of its centre. As many lie in each voxel, but no sphere is in two: what separates copies from crowds.
+- Random, none astride: the random spheres moved until each lies within the voxel of its centre. As many lie in each
+  voxel, but no sphere is in two: what separates copies from crowds.
 - In all three the outermost spheres touch the sides of one cube, so that all have the same voxels. Registration takes
-  each for larger by up to a 16th of a voxel's side, for the rounding of rays from afar; even spheres and those moved
-  keep that far from the sides of their voxels where they have the room.
+  each for larger by up to a 16th of a voxel's side; even spheres and those moved keep that far from the sides.
 - Random is slower where the whole interval of random over even lies above 1, else not slower where it lies below 1.02;
   the claim is reproduced where all numbers of objects are slower, not reproduced where none is and half of them or more
   are not. It is judged by the asynchronous machine, the one that they describe, simulated packet by packet: two tasks a
   node, links that carry while nodes compute, finite buffers; overlapped and stepwise, where nothing or everything
   waits, stand next to it.
-- How deep primary rays go is counted in a render without lights.
-- Why time grows less than the objects, from the fewest to the most of them, overlapped: objects over time is the
-  product of four ratios. Voxels that all rays enter; tests in a voxel, over the objects; the work of all nodes, over
-  the tests; the machine's time, over that work.
+- How deep primary rays go is counted without lights. Why time grows less than the objects, from the
+  fewest to the most of them, overlapped: objects over time is a product of four ratios, see its table.
 - Time counts as linear where objects over time is less than 1.1. The reason that Yoshitani & Yamazaki give, rays that
   end earlier, is the right one where fewer voxels a ray explain more than half of the product, by logarithms, for even
-  and for random objects. Both by the whole interval; where it holds the limit the claim cannot be told.
+  and for random objects.
 """
 import numpy as np
 import pandas as pd

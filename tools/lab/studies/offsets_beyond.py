@@ -8,8 +8,7 @@ Is every offset beyond sqrt(P) = {reference} worse, as Kohata & Ito say?
   well an offset can spread what is costly; measured in the image, and the same on the torus.
 - Offsets are compared with p = {reference}, vector {length} pixels; p = {mirror}, its mirror, is in no group.
   Differences are of the same picture.
-- "0..n is enough" is reproduced where no offset beyond gains 0.02 of the mean load over the best of 0..n, and not
-  reproduced where one does, all together with 95 % (Bonferroni).
+- "0..n is enough" where no offset beyond gains 0.02 of the mean load, all together with 95 % (Bonferroni).
 """
 import numpy as np
 import pandas as pd

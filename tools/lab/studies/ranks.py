@@ -18,10 +18,9 @@ How many MPI ranks are worth having, and from where on do they talk more than th
   shrink with its voxel and its words with a face of that, and rank 0's host looks at so many more nodes.
 - Times of the model do not include what commands to the device cost beyond one rank's, collisions of messages, or
   waiting for a rank that is late for another reason.
-- Networks: alpha and beta fitted to a ping-pong of `raya ping` (minimum of up to 300 turns for each of nine lengths, 1
-  B to 4 MB), two that are assumed, and one that is given, where it is (`--network`). Measured: `mpirun -n R raya
-  render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one thread a rank; the model is
-  compared with the minimum.
+- Networks: fitted to a ping-pong of `raya ping`, two that are assumed, and one that is given (`--network`).
+  Measured: `mpirun -n R raya render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one
+  thread a rank; the model is compared with the minimum.
 - Scaling, measured the same way: strong has the same picture on more ranks; weak has pixels in proportion to ranks on
   the ring, and objects, spread evenly, on the torus. Efficiency is the work (modelled cycles) that a core does in a
   second, by the minimum, over that of one rank.

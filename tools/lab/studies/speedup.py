@@ -5,8 +5,7 @@ How many times faster do P PEs compute the image than one?
 - {scene} at {size} x {size} on 1 to {pes} PEs of the SPA, every number; first pass.
 - Speed-up = sum of all loads / largest load, from one cost image: modelled computing alone, without transfers.
 - Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}, as in Fig. 8.
-- A speed-up of one picture (229, 3.86) counts as reproduced where it lies in the 95 % prediction interval of the
-  views, by their order (see Fig. 8); "60 or more" where the mean's interval does.
+- A speed-up of one picture (229, 3.86) counts as reproduced as in Fig. 8; "60 or more" where the mean's interval does.
 - Kohata & Ito do not say which offset they took for fewer than 256 PEs, nor which PE has which columns then: p = 16
   throughout is drawn, and p = round(sqrt(P)), with both folds.
 - CAP's and the Pixel Machine's mapping: A x A PEs, each has every A-th pixel of every A-th line. Kohata & Ito quote

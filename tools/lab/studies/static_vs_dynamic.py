@@ -11,8 +11,8 @@ Are static strategies inadequate from 128 PEs on, and static plus dynamic ones n
   grid, row by row from the top) and then takes C at a time of what is left. Both are simulated exactly on the cost
   image.
 - A request costs its PE {request_cycles} budget cycles: one word to the root and two back at 6 Mword/s, each way with
-  the synchronisation that a rotation has, 0.18 ms by the clock. That is what a barrier of all PEs takes, the most that
-  the request of one can; "free requests" shows the least. The SPA never did this. Requests do not wait for each other.
+  a rotation's synchronisation, 0.18 ms by the clock: that of all PEs, the most that the request of one can take; "free
+  requests" shows the least. The SPA never did this. Requests do not wait for each other.
 - Nothing can end sooner than the larger of the mean load and the largest pixel: the lower bound.
 """
 import math

@@ -5,8 +5,8 @@ What does the filter cost, when a larger offset balances better and makes neighb
 - {scene} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; rendered and filtered over the ring for
   three offsets, rotations and their words counted.
 - Filtering is its arithmetic, the rotations, each its words at the links' rate and a synchronisation (0.3125 ms
-  together, from Tables 3 and 4), and the exchange's set-up of 1.375 ms, which Table 4 leaves. All three are made from
-  the printed times of p = 0 and 16, so filtering is no test of the clock there; p = 8 is a prediction.
+  together, from Tables 3 and 4), and the exchange's set-up of 1.375 ms, which Table 4 leaves [D]. All three are made
+  from the printed times of p = 0 and 16, so filtering is no test of the clock there; p = 8 is a prediction.
 - Ours is not the scene of Kohata & Ito (see Table 2): ratios and the filter's times can be compared.
 - The plots' other offsets follow from the cost image and the shortest routes, which the three renders confirm.
 """
