@@ -23,7 +23,7 @@ class Given:
     network = None
 
     def __init__(self, views):
-        self.views = [Costs(f"view {i}", image, image, {}, 0, 0.0) for i, image in enumerate(views)]
+        self.views = [Costs(f"view {i}", image, image, {}, 0) for i, image in enumerate(views)]
 
     def size(self, default):
         return self.views[0].trace.shape[1]

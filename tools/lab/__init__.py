@@ -17,9 +17,8 @@ if _MISSING:
     sys.exit(2)
 
 from raya.lab import papers
-from raya.lab.laboratory import (Costs, Ensemble, Laboratory, balance_pass, measured, one_of, sampled, settings_of_pass,
-                                 study_scenes)
+from raya.lab.laboratory import Costs, Ensemble, Laboratory, balance_pass, measured, one_of, sampled
 from raya.lab.page import Claim, Comparison, Page, Picture, Plot, Series, Table, series_by, shown, with_paper
 from raya.lab.statistics import (NOT_REPRODUCED, REPRODUCED, UNDECIDED, Estimate, each_of, estimate, fitted_exponent,
-                                 prediction, prediction_text, range_text, verdict, verdict_among)
+                                 holding_to_the_end, prediction, prediction_text, range_text, verdict, verdict_among)
 from raya.lab.study import study

@@ -6,6 +6,7 @@ import sys
 import tempfile
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
+from shlex import quote
 from types import SimpleNamespace
 
 import raya
@@ -44,8 +45,6 @@ def wanted_studies(name):
 
 def command_of(study, options):
     """The command that makes one study's page and no other."""
-    from shlex import quote
-
     scenes = options.scenes[:1] if study.one_scene else options.scenes
     words = ["raya", "study", options.study if options.study.endswith(".py") else study.name, *map(quote, scenes)]
     words += [f"--size {options.size}"] if options.size else []
@@ -129,13 +128,6 @@ def main(arguments):
     return run_all(options, chosen, left_out, scenes)
 
 
-def end_by(number):
-    """Ends as the signal would have, so that the caller sees why."""
-    print("raya: interrupted", file=sys.stderr)
-    signal.signal(number, signal.SIG_DFL)
-    os.kill(os.getpid(), number)
-
-
 class Ended(BaseException):
     """A signal that ends the call."""
 
@@ -150,7 +142,9 @@ if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
     except Ended as ended:
-        end_by(ended.args[0])
+        print("raya: interrupted", file=sys.stderr)
+        signal.signal(ended.args[0], signal.SIG_DFL)
+        os.kill(os.getpid(), ended.args[0])  # as the signal would have ended it, so that the caller sees why
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes it once more at its end
         print("raya: cannot write to stdout: Broken pipe", file=sys.stderr)

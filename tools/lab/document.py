@@ -7,7 +7,6 @@ import os
 import re
 import tempfile
 from collections import Counter
-from functools import partial
 from pathlib import Path
 
 import jinja2
@@ -93,17 +92,13 @@ def ratio(comparison):
     return comparison.ours / comparison.paper if comparison.paper else math.nan
 
 
-def with_unit(number, unit):
-    return f"{number} {unit}" if unit else number
-
-
 def cells_of_comparisons(page):
     """The header and rows of the table that compares with papers; without papers, of the chief figures."""
     def ours(c):
-        return with_unit(shown(c.ours) + (f" +- {c.half_width:.2g}" if c.half_width else ""), c.unit)
+        return f"{shown(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
 
     def paper(c):
-        return "-" if c.paper is None else with_unit(shown(c.paper), c.unit) + (" (derived)" if c.derived else "")
+        return "-" if c.paper is None else f"{shown(c.paper)} {c.unit}".rstrip() + (" (derived)" if c.derived else "")
 
     columns = {"": lambda c: c.what, page.beside or "paper": paper, "ours": ours,
                "ours / theirs": lambda c: f"{ratio(c):.3g}" if c.paper else "-", "remark": lambda c: c.remark}
@@ -140,9 +135,8 @@ def cells_of_table(table):
 
 def lines_of_run(page):
     """How to repeat a page: what ran, and with which settings."""
-    lines = [(key, page.run[key]) for key in ("command", "version", "device") if page.run]
-    return lines + [(key, value if isinstance(value, str) else json.dumps(plain(value)))
-                    for key, value in page.settings.items()]
+    return [(key, value if isinstance(value, str) else json.dumps(plain(value)))
+            for key, value in [*page.run.items(), *page.settings.items()]]
 
 
 def command_of(pages):
@@ -170,9 +164,9 @@ def verdict_sentences(pages):
         sentence([c for c in claims if c.paper == paper], f"of {paper}") for paper in papers]
 
 
-def claims_with(pages, verdict):
+def not_reproduced(pages):
     return [f'{c.paper}, {c.place}: "{c.words}" {c.why}' for page in pages for c in page.claims
-            if c.verdict == verdict]
+            if c.verdict == NOT_REPRODUCED]
 
 
 def prose(text):
@@ -212,8 +206,8 @@ def environment():
     made.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
     made.globals.update({one.__name__: one for one in (
         cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
-        title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS,
-        MOST_ROWS=MOST_ROWS, not_reproduced=partial(claims_with, verdict=NOT_REPRODUCED))
+        not_reproduced, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
+        OPEN_ROWS=OPEN_ROWS, MOST_ROWS=MOST_ROWS)
     return made
 
 

@@ -3,6 +3,7 @@ import hashlib
 import pickle
 from collections import namedtuple
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +31,6 @@ class Costs:
     supersample: np.ndarray  # of supersampling; None without
     report: dict
     job_words: int  # what a PE holds of the scene
-    device_s: float  # measured: tracing
 
     @property
     def recomputed(self):
@@ -51,12 +51,6 @@ def format_for(scene):
     return SPA["format"] if 4 * raya.job_words(scene) <= SPA["pe_memory_bytes"] else "fp32"
 
 
-def view_count(scene, size, most=VIEWS):
-    """64 views of scenes like the paper's at 256 x 256; fewer of large images and of many objects, 4 at least."""
-    tests = 2**27 // (size * size * max(scene.objects, 1))
-    return max(min(4, most), min(tests, most))
-
-
 class Laboratory:
     """Renders, each once: cost images are kept in a folder, by scene and settings, for all studies of a call.
 
@@ -65,13 +59,10 @@ class Laboratory:
 
     def __init__(self, folder, size=None, network=None, **options):
         self._folder, self._size, self.network, self._options = Path(folder), size, network, options
-        self._session = None
 
-    @property
+    @cached_property
     def session(self):
-        if self._session is None:
-            self._session = raya.Session(self._options.get("device") or "")
-        return self._session
+        return raya.Session(self._options.get("device") or "")
 
     def size(self, default):
         return self._size or default
@@ -92,15 +83,14 @@ class Laboratory:
             costs.label = scene.name
             return costs
         result = self.render(scene, cost=True, **options)
-        costs = Costs(scene.name, result.costs["trace"].copy(), None, result.report, result.job_words,
-                      result.device_s)
-        if antialias == "supersample":
-            costs.supersample = result.costs["supersample"].copy()
+        images = {name: image.copy() for name, image in result.costs.items()}
+        costs = Costs(scene.name, images["trace"], images.get("supersample"), result.report, result.job_words)
         file.write_bytes(pickle.dumps(costs))
         return costs
 
     def ensemble(self, scene, size, antialias="none", most=VIEWS):
-        count = view_count(scene, size, most)
+        """64 views of scenes like the paper's at 256 x 256; fewer of large images and of many objects, 4 at least."""
+        count = max(min(4, most), min(2**27 // (size * size * max(scene.objects, 1)), most))
         views = [self.costs(scene.random_view(seed).renamed(f"{scene.name}, view {seed}"), size, antialias)
                  for seed in range(1, count + 1)]
         return Ensemble(self.costs(scene, size, antialias), views)
@@ -112,27 +102,18 @@ def one_of(scenes):
 
 
 def balance_pass(lab, scenes, first):
-    """One pass over one scene, a PE for each column: (scene, size, cost image of the picture, those of the views)."""
-    scene = one_of(scenes)
-    size = lab.size(256)
+    """One pass over one scene, a PE for each column: (settings, cost image of the picture, those of the views)."""
+    scene, size = one_of(scenes), lab.size(256)
     ensemble = lab.ensemble(scene, size, "none" if first else "supersample")
-    image = (lambda costs: costs.trace) if first else (lambda costs: costs.supersample)
-    return scene.name, size, image(ensemble.picture), [image(view) for view in ensemble.views]
+    picture, *views = (one.trace if first else one.supersample for one in [ensemble.picture, *ensemble.views])
+    return {"scene": scene.name, "size": size, "pes": size, "views": len(views), "view_seeds": f"1..{len(views)}",
+            "lowest_view_degrees": 5, "highest_view_degrees": 75}, picture, views
 
 
 VIEWS_PROSE = """
 - Next to the picture stand {views} views of the same scene, of the seeds {view_seeds}: the camera at the same
   distance, drawn evenly from the sphere between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at. Intervals are of 95 %."""  # of the studies of one pass, below what they measure
-
-
-def settings_of_pass(scene, size, views):
-    return {"scene": scene, "size": size, "pes": size, "views": len(views), "view_seeds": f"1..{len(views)}",
-            "lowest_view_degrees": 5, "highest_view_degrees": 75}
-
-
-def study_scenes():
-    return [raya.example(name) for name in ("centre", "spheres", "glass", "polygons", "cones")]
+  looks at."""  # of the studies of one pass, below what they measure
 
 
 Measured = namedtuple("Measured", "least median largest runs")  # seconds

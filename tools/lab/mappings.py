@@ -2,6 +2,7 @@
 
 The lattice is that of the cyclic mapping with a PE for each column: (p, 1) and (W, 0).
 """
+import numpy as np
 
 
 def squarest_grid(pes):
@@ -12,17 +13,9 @@ def squarest_grid(pes):
 
 def shortest_square(offset, side):
     """The square of the length of its shortest vector, pixels."""
-    least = side * side
-    rows = 1
-    while rows * rows < least:
-        right = rows * offset % side
-        least = min(least, rows * rows + min(right, side - right) ** 2)
-        rows += 1
-    return least
-
-
-def shortest_vector(offset, side):
-    return shortest_square(offset, side) ** 0.5
+    rows = np.arange(1, side + 1)  # the last one is back at its column
+    right = rows * offset % side
+    return int((rows**2 + np.minimum(right, side - right)**2).min())
 
 
 def shares_blocks(offset, side, n):

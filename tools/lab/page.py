@@ -1,5 +1,6 @@
 """What a study has found, as plain data: from this its files and its part of the document are made."""
 import numbers
+import re
 from dataclasses import dataclass, field, replace
 from typing import Optional
 
@@ -78,6 +79,8 @@ class Comparison:
     half_width: Optional[float] = None
 
     def __post_init__(self):
+        if self.paper is not None and np.isnan(self.paper):
+            self.paper = None
         if not isinstance(self.ours, numbers.Real) or np.isnan(self.ours):
             raise ValueError(f"comparison '{self.what}': ours is {self.ours!r}, not a number")
 
@@ -128,24 +131,14 @@ class Page:
             prose = prose.format_map({**self.settings, **self.words})
         except KeyError as error:
             raise ValueError(f"study {name}: its docstring has {{{error.args[0]}}}, which no setting fills") from None
-        lines = [line for line in prose.splitlines() if line.strip()]
-        self.title, self.question = lines[0], ""
-        for line in lines[1:]:
-            if line.startswith("- "):
-                self.method.append(line[2:])
-            elif self.method:
-                self.method[-1] += " " + line.strip()
-            else:
-                self.question = f"{self.question} {line.strip()}".strip()
+        head, *items = re.split(r"^- ", prose, flags=re.MULTILINE)
+        self.title, _, question = head.strip().partition("\n")
+        self.question, *self.method = (" ".join(text.split()) for text in (question, *items))
         for kind in (self.tables, self.plots + self.pictures):
             names = [one.name for one in kind]
             if len(names) != len(set(names)):
                 raise ValueError(f"study {name}: two files have one name: {sorted(names)}")
         return self
-
-    def table(self, name):
-        """The rows of a table."""
-        return next(t.rows for t in self.tables if t.name == name)
 
 
 def shown(value):

@@ -28,10 +28,10 @@ def output_of(words, name, **how):
 
 
 def lacks_mpirun():
-    if not LAUNCHER or shutil.which(LAUNCHER[0]) is None:
-        return (f"cannot start {LAUNCHER[0] if LAUNCHER else 'RAYA_MPIRUN'}; remedy: install openmpi-bin or mpich, of "
-                "the MPI that raya was built with, or name another launcher in RAYA_MPIRUN")
-    return ""
+    name = LAUNCHER[0] if LAUNCHER else "RAYA_MPIRUN"
+    return "" if shutil.which(name) else (
+        f"cannot start {name}; remedy: install openmpi-bin or mpich, of the MPI that raya was built with, or name "
+        "another launcher in RAYA_MPIRUN")
 
 
 def on_ranks(ranks, arguments):

@@ -100,19 +100,15 @@ def bricks(result, ranks):
     cycles, words = result.step_cycles, result.step_link_words
     by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)
     source, target = np.repeat(rank_of[:, None], 6, 1), rank_of[ends]
-    link = np.broadcast_to(np.arange(6), ends.shape)
     node, way = np.nonzero(source != target)
-    face = (source[node, way].astype(np.int64) * ranks + target[node, way]) * 6 + link[node, way]
+    face = (source[node, way].astype(np.int64) * ranks + target[node, way]) * 6 + way
     faces, index = np.unique(face, return_inverse=True)
-    sums = np.zeros((len(words), len(faces)))  # [superstep, face]
-    np.add.at(sums.T, index, words[:, node, way].T.astype(float))
-    sums = 4 * sums
-    most = {"messages": 0.0, "bytes": 0.0}
-    if len(faces):
-        for name, values in (("messages", (sums > 0).astype(float)), ("bytes", sums)):
-            ways = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
-                    for end in (faces // 6 // ranks, faces // 6 % ranks)]
-            most[name] = np.maximum(*ways).max(1).sum()
+    sums, most = np.zeros((len(words), len(faces))), {}  # [superstep, face]
+    np.add.at(sums.T, index, 4 * words[:, node, way].T.astype(float))
+    for name, values in (("messages", (sums > 0).astype(float)), ("bytes", sums)):
+        ways = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
+                for end in (faces // 6 // ranks, faces // 6 % ranks)]
+        most[name] = np.maximum(*ways).max(1).sum()
     return {"nodes": len(rank_of), "most": np.bincount(rank_of).max(), "supersteps": len(cycles),
             "cycles": float(by_rank.max(1).sum()), "all": float(cycles.sum()), **most}
 

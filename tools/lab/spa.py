@@ -1,10 +1,4 @@
-"""Modelled times of the SPA on one clock, and how sure it is.
-
-Computing is the instruction budget's cycles of 100 ns times a factor for what the budget does not see; rotations,
-exchanges and transfers are at the rates of the real machine. The factor is taken from the filter, the only computing
-of Kohata & Ito that depends on no scene: Tables 3 and 4 leave 7 ms for it [D], the budget has 1.0752 ms. That it holds
-for ray tracing too is an assumption, so conclusions are shown for factors of 1 to 8.
-"""
+"""Modelled times of the SPA on one clock, and how sure it is: CLOCK tells."""
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -34,26 +28,15 @@ CLOCK = (f"modelled, one clock: the budget's cycles of 100 ns times {FACTOR:.2f}
 
 
 def host_model():
-    """What a call of the host takes: {'setup_ms', 'rotation_ms', 'words_per_s': (least, most)}.
-
-    From the printed 2 and 12 ms (Table 4, 2 and 34 rotations) and 140 ms (Table 2, 256 x 256 pixels of 3 words), each
-    rounded to 1 ms.
-    """
+    """What a call of the host takes, (least, most), from printed ms: of 2 and 34 rotations, of 256 x 256 x 3 words."""
     few, many = 2, 34
     few_ms, many_ms, image_ms = (np.array([value - ROUNDING, value + ROUNDING]) for value in
                                  (papers.EXCHANGE_0_MS, papers.EXCHANGE_16_MS, papers.IMAGE_MS))
     # few_ms = setup + 2 r and many_ms = setup + 34 r give setup = (34 few_ms - 2 many_ms) / 32.
     setup = (many * few_ms - few * many_ms[::-1]) / (many - few)
     rotation = (many_ms - few_ms[::-1]) / (many - few)
-    words = 3 * papers.SIZE**2
-    rate = 1e3 * words / (image_ms - setup[::-1])[::-1]
+    rate = 3e3 * papers.SIZE**2 / (image_ms - setup[::-1])[::-1]
     return {"setup_ms": tuple(setup), "rotation_ms": tuple(rotation), "words_per_s": tuple(rate)}
-
-
-def host_call_ms(model, words):
-    """(least, most) ms of a call that moves so many words through the host."""
-    (low, high), (slow, fast) = model["setup_ms"], model["words_per_s"]
-    return low + 1e3 * words / fast, high + 1e3 * words / slow
 
 
 @dataclass
@@ -75,10 +58,6 @@ class SpaRun:
     @property
     def rotations(self):
         return self.report["communication"]["rotations"]
-
-    def phase(self, name):
-        """The load of a phase: {'max', 'imbalance', ...}."""
-        return self.report["load"][name]
 
 
 def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
@@ -117,9 +96,10 @@ class SmoothingRuns:
         """A row of each offset that was rendered; times in ms."""
         all_rows = []
         for p, run in self.runs.items():
-            t, last = run.time(factor), run.phase("supersample" if self.antialias == "supersample" else "trace")
+            t, load = run.time(factor), run.report["load"]
+            last = load["supersample" if self.antialias == "supersample" else "trace"]
             row = {"p": p, "rotations": run.rotations, "communication": t["communication"], "filter": t["filter"],
-                   "compare": t["compare"], "trace": factor * spa_ms(run.phase("trace")["max"]),
+                   "compare": t["compare"], "trace": factor * spa_ms(load["trace"]["max"]),
                    "supersample": factor * spa_ms(last["max"]), "u": last["imbalance"]}
             row["filtering"] = row["filter"] + row["communication"]
             row["filtered"] = row["trace"] + row["filtering"]
@@ -130,10 +110,6 @@ class SmoothingRuns:
 
     def times(self, factor=FACTOR):
         return offset_times(self.costs, self.size, self.antialias, factor)
-
-    def near(self, factor=FACTOR):
-        """The offsets 0..16 of them."""
-        return self.times(factor)[:17]
 
     @property
     def recomputed(self):

@@ -70,6 +70,11 @@ def range_text(values, digits=3):
     return f"{np.min(values):.{digits}f} .. {np.max(values):.{digits}f}"
 
 
+def holding_to_the_end(values, holds):
+    """The values from the first on from which something holds for all: pandas series."""
+    return values[holds[::-1].cummin()[::-1]]
+
+
 def fitted_exponent(x, y):
     """The e for which c x^e lies nearest to y, by least squares of the logarithms."""
     return float(stats.linregress(np.log(x), np.log(y)).slope)

@@ -60,13 +60,11 @@ class Run:
         # Entries of the voxels' lists beyond each object's first.
         self.copies = report["torus" if time is None else "accel"]["copies"]
         self.voxels_of_object = 1 + self.copies / self.objects
-        if time is None:
-            self._add_torus(result, report["torus"], report["modelled_ms"])
-        else:
+        if time is not None:
             self.modelled_s = 1e-3 * raya.t805_ms(e)
             self.measured_ms, self.median_ms = 1e3 * time.least, 1e3 * time.median
-
-    def _add_torus(self, result, torus, modelled_ms):
+            return
+        torus, modelled_ms = report["torus"], report["modelled_ms"]
         self.packets = sum(kind["made"] for kind in torus["packets"].values())
         self.returns, self.discarded = torus["returns"]["messages"], torus["discarded"]
         for name in ("overlapped", "stepwise", "compute", "messages", "links"):

@@ -11,25 +11,22 @@ From how many objects on does a grid or a BVH pay, which of them, and how does t
   takes no further; minimum and median of the samples.
 - Without an accelerator, a render that would take longer than {bearable} s is left out: predicted from the scene's rays
   and objects, at what a test took in the scene before.
-- Tests: of a ray of any kind with an object. Steps: voxels that rays enter, or nodes of the BVH. Memory: what a PE
-  holds of the scene and of grid or BVH, words of 4 bytes. Each is counted; build is measured: to make the grid or BVH,
-  on the host.
-- Where several scenes differ in their seed alone, a figure is their mean, and after +- stands the half width of its 95
-  % confidence interval by Student's t. A ratio of two ways is taken in each scene, then the mean; of a single scene, in
-  each turn. A way counts as faster where that whole interval says so; after a single turn the ratio alone is there to
-  say it.
+- Counted: tests, of a ray of any kind with an object; steps, voxels that rays enter, or nodes of the BVH; memory, what
+  a PE holds of the scene and of grid or BVH. Build is measured: to make the grid or BVH, on the host.
+- Where several scenes differ in their seed alone, a figure is their mean. A ratio of two ways is taken in each scene,
+  then the mean; of a single scene, in each turn. A way counts as faster where the whole interval says so; after a
+  single turn, where the ratio does.
 - Growth: the exponent of objects in what a ray takes, by least squares of logarithms over scenes of {fitted} objects
   and more, for each seed.
-- Embree 3: the same rays (the same Whitted ray tracing, tools/embree) on all cores, the faster of asking ray by ray and
-  sixteen in step; its loop over the picture alone, three single pictures a turn. Rays are counted on both sides; where
-  they differ by more than one in a thousand there is no ratio.
+- Embree 3: the same rays (tools/embree) on all cores, the faster of asking ray by ray and sixteen in step; its loop
+  over the picture alone, three pictures a turn. Where rays differ by more than one in a thousand there is no ratio.
 """
 import math
 
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Table, estimate, fitted_exponent, sampled, series_by, study
+from raya.lab import Estimate, Page, Plot, Table, estimate, fitted_exponent, sampled, series_by, study
 from raya.lab.laboratory import rays_of, tests_of
 from raya.lab.programs import beside_raya, output_of
 
@@ -57,11 +54,6 @@ class Way:
 
     def __init__(self, name, turn, **figures):
         self.name, self.turn, self.figures, self.seconds, self.turns = name, turn, figures, [], []
-
-    def take_turn(self):
-        some = self.turn()
-        self.seconds += some
-        self.turns.append(1e3 * min(some))
 
 
 def raya_way(lab, scene, size, name):
@@ -125,7 +117,9 @@ def measure(lab, size, scenes):
         for turn in range(ROUNDS):
             for way in ways:
                 if turn == 0 or sum(way.seconds) < ENOUGH_S:
-                    way.take_turn()
+                    some = way.turn()
+                    way.seconds += some
+                    way.turns.append(1e3 * min(some))
         for way in ways:
             if way.name == NONE:
                 test_s = min(way.seconds) / (way.figures["rays"] * scene.objects)
@@ -135,18 +129,21 @@ def measure(lab, size, scenes):
     return pd.DataFrame(rows), left_out, failures
 
 
+def pairs(rows, way, other):
+    """A row of each scene in both ways, and whether these have traced the same rays."""
+    both = rows[rows["way"] == way].merge(rows[rows["way"] == other], on=["series", "scene", "seed", "objects"],
+                                          suffixes=("", " of other"))
+    rays = both[["rays", "rays of other"]]
+    return both.assign(same=rays.max(axis=1) - rays.min(axis=1) <= SAME_WORK * rays.min(axis=1))
+
+
 def ratios(rows, way, other):
     """The time of one way over another's, of every group that has scenes in both with the same rays."""
     found = []
-    for (series, group), some in rows.groupby(["series", "scene"], sort=False):
-        a, b = (some[some["way"] == name].set_index("seed") for name in (way, other))
-        both = [seed for seed in a.index if seed in b.index and
-                abs(a["rays"][seed] - b["rays"][seed]) <= SAME_WORK * min(a["rays"][seed], b["rays"][seed])]
-        if not both:
-            continue
-        times = [a["best"][seed] / b["best"][seed] for seed in both]
-        if len(a) == 1:
-            times = [x / y for x, y in zip(a["turns"][both[0]], b["turns"][both[0]])]
+    for group, some in pairs(rows, way, other).query("same").groupby("scene", sort=False):
+        times = some["best"] / some["best of other"]
+        if len(some) == 1:
+            times = [x / y for x, y in zip(some["turns"].iloc[0], some["turns of other"].iloc[0])]
         found.append({"group": group, "objects": some["objects"].iloc[0], "times": estimate(times)})
     return found
 
@@ -241,8 +238,7 @@ def finding_of_two(runs, way, other):
     some = ratios(runs, way, other)
     if not some:
         return f"No scene has a ratio of {way} to {other}."
-    faster = sum(one["times"].least > 1 for one in some)
-    slower = sum(one["times"].most < 1 for one in some)
+    faster, slower = (sum(holds) for holds in zip(*((e.least > 1, e.most < 1) for e in (one["times"] for one in some))))
     rest = len(some) - faster - slower
     return (f"{other} is faster than {way} in {faster} of {len(some)}, slower in {slower}"
             f"{f', not to be separated in {rest}' if rest else ''}; time of {way} over {other}: {ratios_text(some)}.")
@@ -250,9 +246,8 @@ def finding_of_two(runs, way, other):
 
 def finding_of_growth(growth, series):
     some = growth[growth["scenes"] == series]
-    exponents = ", ".join(f"{row['time']:.2f}{'' if np.isnan(row['time +-']) else ' +- %.2f' % row['time +-']} "
-                          f"({row['way']}, {row['from (objects)']} to {row['to (objects)']} "
-                          "objects)" for _, row in some.iterrows())
+    exponents = ", ".join(f"{Estimate(row['time'], row['time +-'], None).text(2)} ({row['way']}, "
+                          f"{row['from (objects)']} to {row['to (objects)']} objects)" for _, row in some.iterrows())
     tens = ", ".join(f"{10**row['time']:.2f} ({row['way']})" for _, row in some.iterrows())
     return (f"{series}: what a ray takes grows as the objects to the power of {exponents}; ten times the objects take "
             f"{tens} times as long.")
@@ -276,10 +271,7 @@ def findings_of_embree(runs, failures):
         return ["Embree was not measured: no program embree_peer lies beside raya; `tools/peers --setup` installs "
                 "Embree, then cmake's target embree_peer makes it."]
     findings = [finding_of_two(runs, EMBREE, BVH)] if (runs["way"] == EMBREE).any() else []
-    key = ["series", "scene", "seed"]
-    both = runs[runs["way"] == EMBREE].merge(runs[runs["way"] == BVH], on=key, suffixes=("", " of bvh"))
-    fewer = both[["rays", "rays of bvh"]].min(axis=1)
-    others = both[(both["rays"] - both["rays of bvh"]).abs() > SAME_WORK * fewer]
+    others = pairs(runs, EMBREE, BVH).query("not same")
     if len(others):
         names = ", ".join(f"{o['scene']} (seed {o['seed']})" if o["seed"] else o["scene"] for _, o in others.iterrows())
         findings.append(f"Embree traces more or fewer rays by over one in a thousand, and has no ratio, in {names}.")

@@ -11,10 +11,8 @@ Which offset of the cyclic mapping makes this image soonest, communication in th
   --size overrides. Of equal offsets the smallest is named.
 - What holds for the scene and not for one picture of it follows from {views} random views, as in Fig. 8 (fewer where
   there are many objects): offsets are chosen by the views of odd seeds and judged in those of even seeds, compared in
-  the same view, with intervals of 95 %.
-- That 0..sqrt(P) are enough is reproduced where for all numbers of PEs and all ways of anti-aliasing together the best
-  offset of them takes at most {rule} % longer than the best of all; it is not reproduced where it takes longer than
-  that for one of them. That p = n^2 is p = 0 is reproduced where both take the same in every picture.
+  the same view. 0..sqrt(P) are enough where in all cases together the best of them takes at most {rule} % longer than
+  the best of all, and not where it takes longer in one.
 """
 import numpy as np
 import pandas as pd
@@ -40,14 +38,12 @@ class Choice:
         self.best, self.best_near = (self.times.loc[some.idxmin()] for some in (total, total[:self.root + 1]))
         sums = self.chosen_by.sum(0)
         self.chosen, self.chosen_near = int(sums.argmin()), int(sums[:self.root + 1].argmin())
+        self.time = estimate(self.judged_by[:, self.chosen])
         # The best offset, were computing so many times as dear.
         self.factors = ", ".join(dict.fromkeys(
             str((self.times["ring_ms"] + f / FACTOR * (total - self.times["ring_ms"])).idxmin()) for f in FACTORS))
 
     method = property(lambda c: "without anti-aliasing" if c.antialias == "none" else f"with --antialias {c.antialias}")
-
-    def time_of(self, offset):
-        return estimate(self.judged_by[:, offset])
 
     def longer(self, offset, confidence=0.95):
         """By how many % longer an offset takes than the chosen one, in the views by which nothing was chosen."""
@@ -70,10 +66,9 @@ def best_offset(lab, scenes):
     by_scene = [choices_of(lab, scene) for scene in some]
     every = [choice for choices in by_scene for choice in choices]
     first = by_scene[0]
-    settings = {"scenes": [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene),
-                            "fold": "cyclic"} for choices, scene in zip(by_scene, some)],
-                "factor": FACTOR, "views": VIEWS, "rule": ENOUGH}
-    return Page(settings,
+    named = [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene), "fold": "cyclic"}
+             for choices, scene in zip(by_scene, some)]
+    return Page({"scenes": named, "factor": FACTOR, "views": VIEWS, "rule": ENOUGH},
                 [*map(chief_finding, by_scene), *map(views_finding, every), *map(choice_finding, every)],
                 [Comparison(f"best p, {c.pes} PEs, {c.antialias}", "", None, int(c.best["offset"]),
                             f"u of the first pass {c.best['imbalance']:.3f}; sqrt(P), Kohata & Ito's, is p = {c.root}")
@@ -93,14 +88,12 @@ def chief_finding(choices):
 
 
 def views_finding(c):
-    def longer(offset):
-        return c.longer(offset).text(1)
-
     picture = int(c.best["offset"])
+    near, root, zero, own = (c.longer(offset).text(1) for offset in (c.chosen_near, c.root, 0, picture))
     return (f"{c.scene}, {c.pes} PEs, {c.method}: of {len(c.chosen_by) + len(c.judged_by)} views one half chooses p = "
-            f"{c.chosen}; it takes {c.time_of(c.chosen).text(1)} ms in the other half. There the best of 0..sqrt(P), p "
-            f"= {c.chosen_near}, takes {longer(c.chosen_near)} % longer, p = {c.root} {longer(c.root)} %, p = 0 "
-            f"{longer(0)} %, and p = {picture}, the best for the scene's own picture, {longer(picture)} %.")
+            f"{c.chosen}; it takes {c.time.text(1)} ms in the other half. There the best of 0..sqrt(P), p "
+            f"= {c.chosen_near}, takes {near} % longer, p = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the "
+            f"best for the scene's own picture, {own} %.")
 
 
 def choice_finding(c):
@@ -142,7 +135,7 @@ def tables_of(every):
     views, best, offsets = [], [], []
     for c in every:
         head = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}
-        time, near, root, zero = (c.time_of(c.chosen), c.longer(c.chosen_near), c.longer(c.root), c.longer(0))
+        time, near, root, zero = (c.time, c.longer(c.chosen_near), c.longer(c.root), c.longer(0))
         views.append({**head, "best p": c.chosen, "time (ms)": time.mean, "time, +- (ms)": time.half,
                       "best p of 0..sqrt(P)": c.chosen_near, "it takes longer (%)": near.mean, "it, +- (%)": near.half,
                       "p = sqrt(P) takes longer (%)": root.mean, "p = sqrt(P), +- (%)": root.half,

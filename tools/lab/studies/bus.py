@@ -12,7 +12,7 @@ what is the ring for?
   way, is left out.
 """
 import pandas as pd
-from raya.lab import Page, Plot, Series, Table, one_of, study
+from raya.lab import Page, Plot, Series, Table, holding_to_the_end, one_of, study
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.voxels import powers
 
@@ -23,8 +23,7 @@ def exchange(lab, scene, size, pes, antialias, way):
     """(moves, modelled ms, ms by words alone, hash) of the exchange of neighbours by one way."""
     result = lab.render(scene, machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=pes,
                         offset=round(pes**0.5) % size, accel="none", antialias=antialias, exchange=way)
-    report = result.report
-    c, ms = report["communication"], report["modelled_ms"]["communication"]
+    c, ms = result.report["communication"], result.report["modelled_ms"]["communication"]
     words = c["transfer_words"] + c["pe_broadcast_words"]
     return c[WAYS[way]], ms, 1e3 * words / SPA["link_words_per_s"] if words else ms, result.hash
 
@@ -43,9 +42,8 @@ def rows_of(lab, scene, size, antialias):
 
 def wins_from(rows, bus):
     """From which P on the ring takes less than the better of the bus's two ways."""
-    wins = rows["ring (ms)"] < bus
-    last_loss = wins[~wins].index.max() if not wins.all() else -1
-    return f"from {rows['P'][last_loss + 1]} PEs on" if last_loss + 1 < len(rows) else "nowhere up to there"
+    pes = holding_to_the_end(rows["P"], rows["ring (ms)"] < bus)
+    return f"from {pes.iloc[0]} PEs on" if len(pes) else "nowhere up to there"
 
 
 def finding_of_ring(rows):
@@ -61,18 +59,16 @@ def finding_of_ring(rows):
 
 
 def plot_of(rows):
-    method = rows["anti-aliasing"].iloc[0]
-    columns = {"ring": "ring (ms)", "bus, PE to PE": "bus (ms)", "broadcasts by PEs": "broadcasts, time (ms)",
-               "bus, PE to PE, words alone": "bus, words alone (ms)",
-               "broadcasts by PEs, words alone": "broadcasts, words alone (ms)"}
+    method, bus, cast = rows["anti-aliasing"].iloc[0], "bus, PE to PE", "broadcasts by PEs"
+    columns = {"ring": "ring (ms)", bus: "bus (ms)", cast: "broadcasts, time (ms)",
+               f"{bus}, words alone": "bus, words alone (ms)", f"{cast}, words alone": "broadcasts, words alone (ms)"}
     return Plot(f"bus-{method}", f"Time of the exchange against the number of PEs, {method}", "PEs",
                 "exchange (modelled ms)", [Series(label, rows["P"], rows[c]) for label, c in columns.items()], "xy")
 
 
 @study("bus", one_scene=True)
 def bus(lab, scenes):
-    scene = one_of(scenes)
-    size = lab.size(256)
+    scene, size = one_of(scenes), lab.size(256)
     ways = [rows_of(lab, scene, size, method) for method in ("filter", "supersample")]
     rows = pd.concat(ways, ignore_index=True)
     return Page({"scene": scene.name, "size": size, "pes": ways[0]["P"].tolist(), "format": format_for(scene)},

@@ -5,10 +5,9 @@ What do the tables come to, on one clock, for scenes that are as uneven and as h
 - {scenes} scenes at {size} x {size} on {pes} PEs of the SPA, a PE for each column. By default those of `raya generate
   cluster`, seeds {seeds}: seven spheres above a floor, one light.
 - Sought were, for the mean of many seeds: u(0) = 1.58, 17 % of the pixels recomputed and some 1,520 budget cycles a
-  pixel, which by this clock are the printed 64,800 ms of one PE. scenes/README.md describes the search. All else was
-  left free, u(16) above all.
-- Each figure of Kohata & Ito is of one picture: it counts as reproduced where it lies in the 95 % prediction interval
-  of the scenes', by their order (see Fig. 8); outside it is not reproduced.
+  pixel, the printed 64,800 ms of one PE (see scenes/README.md). All else was left free, u(16) above all.
+- Each figure of Kohata & Ito is of one picture: it is reproduced where it lies in the scenes' prediction interval (see
+  Fig. 8).
 """
 import pandas as pd
 import raya
@@ -66,9 +65,9 @@ def cluster(lab, scenes):
                         **{"speed-up": table["1 PE: compute (ms)"] / table["ray tracing, p = 16 (ms)"]})
     in_paper = own and size == 256
 
-    def comparison(figure, remark):
+    def comparison(figure):
         what, unit, column, paper, _, derived = figure
-        mean = estimate(rows[column])
+        mean, remark = estimate(rows[column]), "as it is" if not own else "sought" if figure in SOUGHT else "free"
         return Comparison(what, unit, paper if in_paper else None, mean.mean,
                           f"{remark}; {range_text(rows[column])} of single scenes", derived, mean.half)
 
@@ -78,8 +77,7 @@ def cluster(lab, scenes):
                 [f"Over {len(rows)} scenes u(16), which nothing was sought for, is {estimate(rows['u(16)']).text()} in "
                  f"the mean and {range_text(rows['u(16)'])} of single ones; p = 16 is {estimate(rows['gain']).text(2)} "
                  "times as fast in total as p = 0, filter included."],
-                [comparison(figure, "sought" if own else "as it is") for figure in SOUGHT] +
-                [comparison(figure, "free" if own else "as it is") for figure in FREE],
+                [comparison(figure) for figure in SOUGHT + FREE],
                 [claim_of(figure, rows) for figure in FREE] if in_paper else [],
                 [Table("cluster", "Each scene", table, on_page=False)],
                 [Plot("cluster", "Imbalance of each scene, column split and cyclic mapping", "u(0)", "u(16)",

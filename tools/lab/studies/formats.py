@@ -12,7 +12,7 @@ import re
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Table, series_by, study, study_scenes
+from raya.lab import Page, Plot, Table, series_by, study
 
 REDUCED = [name + cut for name in "e8m21 e8m18 e8m15 e7m15 e6m15 e6m14 e6m13".split() for cut in ("", "t")]
 STEP, SAMPLES = 1 / 255, 5  # what a shown image can show: one step of 8 bits
@@ -21,9 +21,7 @@ GRANDE = next(m for m in raya.machines() if m["name"] == "grande")
 
 def bits_of(form):
     """(exponent bits, fraction bits, rounding)"""
-    if form == "fp32":
-        return 8, 23, "nearest"
-    exponent, fraction, cut = re.fullmatch(r"e(\d+)m(\d+)(t?)", form).groups()
+    exponent, fraction, cut = re.fullmatch(r"e(\d+)m(\d+)(t?)", "e8m23" if form == "fp32" else form).groups()
     return int(exponent), int(fraction), "truncate" if cut else "nearest"
 
 
@@ -58,43 +56,38 @@ def rows_of(lab, scene, size):
 @study("formats")
 def formats(lab, scenes):
     size = lab.size(256)
-    by_scene, lanes = zip(*(rows_of(lab, scene, size) for scene in scenes or study_scenes()))
-    rows = pd.concat(by_scene, ignore_index=True)
-    overview = []
+    own = [raya.example(name) for name in ("centre", "spheres", "glass", "polygons", "cones")]
+    by_scene, lanes = zip(*(rows_of(lab, scene, size) for scene in scenes or own))
+    rows, overview = pd.concat(by_scene, ignore_index=True), []
     for form, some in rows.groupby("format", sort=False):
-        worst = some.loc[some["psnr_db"].idxmin()]
-        ratio = some["measured_ratio_to_fp32"]
+        worst, ratio = some.loc[some["psnr_db"].idxmin()], some["measured_ratio_to_fp32"]
         overview.append({"format": form, "lowest PSNR (dB)": worst["psnr_db"], "of scene": worst["scene"],
                          "largest error": some["largest_error"].max(),
                          "most off by > 1/255 (%)": 100 * some["share_over"].max(),
                          "time / fp32, least (measured)": ratio.min(), "time / fp32, largest (measured)": ratio.max()})
-    nearest = rows[rows["rounding"] == "nearest"].assign(bits=lambda r: r["fraction_bits"])
+    nearest = rows[(rows["rounding"] == "nearest") & (rows["fraction_bits"] < 23)]
     return Page({"size": size, "machine": "grande", "pes": size, "offset": 16 % size, "bounces": GRANDE["bounces"],
                  "samples": SAMPLES, "lanes": lanes[0], "device": lab.session.device["name"]}, findings_of(rows),
                 tables=[Table("formats-overview", "All scenes", overview),
                         Table("formats", "Each scene and format", rows, on_page=False)],
                 plots=[Plot("formats", "PSNR against fraction bits, rounding to nearest", "fraction bits", "PSNR (dB)",
-                            series_by(nearest[nearest["bits"] < 23].sort_values("bits", kind="stable"), "scene", "bits",
+                            series_by(nearest.sort_values("fraction_bits", kind="stable"), "scene", "fraction_bits",
                                       "psnr_db", style="points"))])
-
-
-def psnr_of(rows, form):
-    return rows[rows["format"] == form].set_index("scene")["psnr_db"]
-
-
-def spread(gains):
-    return f"{gains.mean():+.1f} dB on average ({gains.min():+.1f} to {gains.max():+.1f})"
 
 
 def findings_of(rows):
     spa, fp32 = (rows[rows["format"] == form] for form in ("e6m15", "fp32"))
+    psnr = rows.pivot(index="scene", columns="format", values="psnr_db").reindex(rows["scene"].unique())
+
+    def spread(gains):
+        return f"{gains.mean():+.1f} dB on average ({gains.min():+.1f} to {gains.max():+.1f})"
 
     def text(some, column, factor=1, digits=1):
         return f"{factor * some[column].min():.{digits}f} to {factor * some[column].max():.{digits}f}"
 
-    gains = pd.concat([psnr_of(rows, form) - psnr_of(rows, form + "t") for form in REDUCED if not form.endswith("t")])
-    changes = [f"From {a} to {b} the PSNR changes by {spread(psnr_of(rows, b) - psnr_of(rows, a))}."
-               for a, b in (("e6m13", "e6m15"), ("e8m15", "e8m21"), ("e6m15", "e8m15"))]
+    gains = pd.concat([psnr[form] - psnr[form + "t"] for form in REDUCED if not form.endswith("t")])
+    changes = [f"From {a} to {b} the PSNR changes by {spread(psnr[b] - psnr[a])}." for a, b in
+               (("e6m13", "e6m15"), ("e8m15", "e8m21"), ("e6m15", "e8m15"))]
     return [f"spa22 (e6m15) has a PSNR of {text(spa, 'psnr_db')} dB, fp32 one of {text(fp32, 'psnr_db')} dB; "
             f"{text(spa, 'share_over', 100, 2)} % of its pixels are off by more than 1/255, "
             f"{text(fp32, 'share_over', 100, 2)} % of fp32's; it takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} "

@@ -10,6 +10,8 @@ Does our grid do what others' grids do on the same scenes?
   ends at the first object that is found to hide the light; objects are registered with a margin for rounding. What
   Havran & Sixta do in each of these, and whether they count the first voxel, is not known to us.
 """
+import math
+
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, series_by, study
@@ -32,8 +34,9 @@ def havran(lab, scenes):
     cases = [{"scene": scene, "grid": grid} for scene in scenes or own for grid in grids_for(scene.name)]
     table = swept(cases, lambda scene, grid: run_in_one_pe(lab, scene, size, grid, BOUNCES, "corners"), COLUMNS)
     rows = pd.DataFrame([row_of(*some) for some in zip(table["run"], table["grid"])])
-    rays = pd.DataFrame([{"eye rays": e["primary"], "reflected": e["reflected"], "refracted": e["refracted"],
-                          "shadow rays": e["shadow"], "walks": e["walks"]} for e in (r.events for r in table["run"])])
+    kinds = {"primary": "eye rays", "reflected": "reflected", "refracted": "refracted", "shadow": "shadow rays",
+             "walks": "walks"}
+    rays = pd.DataFrame([{name: run.events[kind] for kind, name in kinds.items()} for run in table["run"]])
     table = table.drop(columns=["grid", "run"]).join(rays)
     table["tests a walk"], table["steps a walk"] = (table[name] / table["walks"] for name in ("tests", "steps"))
     table = table[["scene", "A x B x C", "copies", *rays.columns, "tests", "steps", "tests a walk", "steps a walk",
@@ -41,7 +44,7 @@ def havran(lab, scenes):
     known = rows.dropna(subset="their tests")
     published = [Series("Havran & Sixta", known["their steps"], known["their tests"], "paper")] if len(known) else []
     return Page({"size": size, "bounces": BOUNCES, "sampling": "corners", "format": "fp32"},
-                [finding_of(known, "Tests a ray", "tests"), finding_of(known, "Steps a ray", "steps"),
+                [*(finding_of(known, what) for what in ("tests", "steps")),
                  *(finding_of_finer(a, b) for (_, a), (_, b) in zip(rows.iterrows(), rows[1:].iterrows())
                    if a["scene"] == b["scene"])],
                 [c for _, row in rows.iterrows() for c in comparisons_of(row)],
@@ -53,36 +56,30 @@ def havran(lab, scenes):
 
 
 def row_of(run, grid):
-    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, grid), (None, None))
+    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, grid), (math.nan, math.nan))
     return {"scene": run.scene, "sides": run.sides, "tests": run.tests_per_ray, "steps": run.steps_per_ray,
             "beyond": (run.steps - run.events["walks"]) / run.rays, "their tests": tests, "their steps": steps}
 
 
 def comparisons_of(row):
     name = f"{row['scene']} {row['sides']}"
-
-    def paper(value):
-        return None if pd.isna(value) else value
-
-    yield Comparison(f"{name}: tests a ray", "", paper(row["their tests"]), row["tests"])
-    yield Comparison(f"{name}: steps a ray", "", paper(row["their steps"]), row["steps"],
+    yield Comparison(f"{name}: tests a ray", "", row["their tests"], row["tests"])
+    yield Comparison(f"{name}: steps a ray", "", row["their steps"], row["steps"],
                      f"{row['beyond']:.2f} without the first voxel of each walk")
 
 
-def finding_of(known, what, column):
+def finding_of(known, what):
     if not len(known):
-        return f"{what}: none were published for these grids."
-    ratios = ", ".join(f"{row[column] / row[f'their {column}']:.2f} ({row['scene']} {row['sides']})"
+        return f"{what.capitalize()} a ray: none were published for these grids."
+    ratios = ", ".join(f"{row[what] / row[f'their {what}']:.2f} ({row['scene']} {row['sides']})"
                        for _, row in known.iterrows())
-    return f"{what} are {ratios} times those that Havran & Sixta publish."
+    return f"{what.capitalize()} a ray are {ratios} times those that Havran & Sixta publish."
 
 
 def finding_of_finer(coarse, fine):
     """What a finer grid of one scene does, in ours and in theirs: free of how a ray or a test is counted."""
-    theirs = ""
-    if not pd.isna(coarse["their tests"]) and not pd.isna(fine["their tests"]):
-        theirs = (f"; theirs to {fine['their tests'] / coarse['their tests']:.2f} and "
-                  f"{fine['their steps'] / coarse['their steps']:.2f}")
-    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests fall to "
-            f"{fine['tests'] / coarse['tests']:.2f}, steps grow to {fine['steps'] / coarse['steps']:.2f} "
-            f"times{theirs}.")
+    tests, steps, *others = (f"{fine[name] / coarse[name]:.2f}" for name in ("tests", "steps", "their tests",
+                                                                             "their steps"))
+    theirs = "" if "nan" in others else f"; theirs to {others[0]} and {others[1]}"
+    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests fall to {tests}, steps grow to "
+            f"{steps} times{theirs}.")

@@ -85,8 +85,11 @@ def size_text(size):
 
 
 def findings_of(every):
-    def said(with_voxels, text):
+    def said(text, with_voxels=", {}"):
         return "; ".join(f"{r['scene'][0]}{with_voxels.format(r['voxels'][0])}: {text(r)}" for r in every)
+
+    def balance(r):
+        return "{:.2f} to {:.2f}".format(*r["u over all nodes"].iloc[[0, -1]])
 
     def best(bound):
         def text(r):
@@ -108,12 +111,10 @@ def findings_of(every):
         return text
 
     return [f"The best number of groups on {NODES} nodes where memory is no matter, overlapped: "
-            f"{said(' with {} voxels', best('overlapped'))}.",
-            f"Where every superstep waits for its busiest node and link: {said(', {}', best('stepwise'))}.",
-            *(f"Nodes of {name}, with the shortest buffers that work, can hold: {said(', {}', memory(name))}."
-              for name in MEMORIES),
-            "u over all nodes, from one group to a group for each node: " + said(
-                ", {}", lambda r: f"{r['u over all nodes'].iloc[0]:.2f} to {r['u over all nodes'].iloc[-1]:.2f}") + "."]
+            f"{said(best('overlapped'), ' with {} voxels')}.",
+            f"Where every superstep waits for its busiest node and link: {said(best('stepwise'))}.",
+            *(f"Nodes of {name}, with the shortest buffers that work, can hold: {said(memory(name))}."
+              for name in MEMORIES), f"u over all nodes, from one group to a group for each node: {said(balance)}."]
 
 
 def plots_of(rows):
@@ -123,10 +124,8 @@ def plots_of(rows):
         return Plot(name, title, "groups G", y_label, series_by(labelled, "label", "groups", column) + list(more), log)
 
     limits = [Series(name, [1, NODES], [size, size]) for name, size in MEMORIES.items()]
-    return [plot("hybrid", "Speed-up against the number of groups, overlapped", "speed-up, modelled",
-                 "speed-up, overlapped"),
-            plot("hybrid-stepwise", "Speed-up against the number of groups, stepwise", "speed-up, modelled",
-                 "speed-up, stepwise"),
+    return [*(plot(name, f"Speed-up against the number of groups, {bound}", "speed-up, modelled", f"speed-up, {bound}")
+              for name, bound in (("hybrid", "overlapped"), ("hybrid-stepwise", "stepwise"))),
             plot("hybrid-balance", "Imbalance over the nodes of all groups", "u", "u over all nodes"),
             plot("hybrid-memory", "The fullest node, with the shortest buffers", "bytes",
                  "with the shortest buffers (bytes)", "xy", limits)]

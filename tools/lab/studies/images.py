@@ -6,12 +6,12 @@ Is the cyclic mapping good for every image, or only for the one that Kohata & It
 - Where the image is wider than the array, the fold is cyclic: PE i has the slots i, i + P, ...
 - Efficiency = mean load / largest load, computing alone: no clock is needed. Kohata & Ito had several images of 6 to
   30 objects; their scenes are not known, these are ours, of {fewest} to {most}.
-- Many pictures of a kind stand next to them. {more} Intervals are of 95 %.
+- Many pictures of a kind stand next to them. {more}
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate, papers, study, verdict
+from raya.lab import Claim, Comparison, Page, Plot, Series, Table, estimate, papers, study, verdict, with_paper
 from raya.lab.laboratory import VIEWS
 
 FEWEST, MOST = 6, 30  # objects, as in the paper
@@ -25,20 +25,18 @@ def paper_like_scenes():
 
 
 def rows_of(pictures, objects, pes, offset):
-    u = [[raya.imbalances(one.trace, pes, [p])[0] for one in pictures] for p in (0, offset)]
+    u = np.array([raya.imbalances(one.trace, pes, [0, offset]) for one in pictures])  # [picture, offset]
     rows = pd.DataFrame({"no.": range(1, len(pictures) + 1), "scene": [one.label for one in pictures],
                          "objects": objects, "side (pixels)": [len(one.trace) for one in pictures]})
-    for name, values in zip(("p = 0", f"p = {offset}"), u):
-        rows[f"u, {name}"] = values
-        rows[f"efficiency, {name}"] = 1 / (1 + np.array(values))
+    for p, values in zip((0, offset), u.T):
+        rows[f"u, p = {p}"], rows[f"efficiency, p = {p}"] = values, 1 / (1 + values)
     return rows
 
 
 @study("images")
 def images(lab, scenes):
-    pes = lab.size(256)
+    pes, some = lab.size(256), scenes or paper_like_scenes()
     p = round(pes**0.5)
-    some = scenes or paper_like_scenes()
     pictures = [lab.costs(scene, side) for side in (pes, 2 * pes) for scene in some]
     rows = rows_of(pictures, [scene.objects for scene in some] * 2, pes, p)
     columns, cyclic = "efficiency, p = 0", f"efficiency, p = {p}"
@@ -52,7 +50,7 @@ def images(lab, scenes):
                 [claim_of_columns(every, columns, cyclic), claim_of_cyclic(every, cyclic)] if len(every) > 1 else [],
                 [table_of_groups(groups, columns, cyclic),
                  Table("images", "Imbalance and efficiency of each image", rows)],
-                [plot_of(rows, columns, cyclic, pes, p), plot_of_groups(groups, columns, cyclic)],
+                plots_of(rows, groups, columns, cyclic, pes, p),
                 ["Kohata & Ito tell of their images in words. Here every image has its figures, next to many views and "
                  "random scenes with intervals."], beside=papers.SPA,
                 words={"fewest": rows["objects"].min(), "most": rows["objects"].max(),
@@ -67,10 +65,9 @@ def groups_of(lab, scenes, size):
         groups[f"views of {scene.name}"] = (f"{len(views)} views of {scene.name}, of the seeds 1..{len(views)}, as in "
                                             "Fig. 8.", views)
     if not scenes:
-        pictures = []
-        for i in range(1, VIEWS + 1):
-            n = FEWEST + (i - 1) % (MOST - FEWEST + 1)
-            pictures.append(lab.costs(raya.generate.random(n, i).renamed(f"random-{n}, seed {i}"), size))
+        counts = [(FEWEST + i % (MOST - FEWEST + 1), i + 1) for i in range(VIEWS)]
+        pictures = [lab.costs(raya.generate.random(n, seed).renamed(f"random-{n}, seed {seed}"), size)
+                    for n, seed in counts]
         groups["random scenes"] = (f"{VIEWS} random scenes of {FEWEST} to {MOST} spheres, `raya generate random`, of "
                                    f"the seeds 1..{VIEWS}.", pictures)
     return groups
@@ -97,14 +94,12 @@ def claim_of_cyclic(every, cyclic):
 
 
 def table_of_groups(groups, columns, cyclic):
-    table = []
-    for label, rows in groups.items():
-        row = {"pictures": label, "number": len(rows)}
-        for name, column in (("p = 0", columns), ("cyclic", cyclic)):
-            mean = estimate(rows[column])
-            row.update({name: mean.mean, f"{name}, +-": mean.half, f"{name}, least": rows[column].min(),
-                        f"{name}, largest": rows[column].max()})
-        table.append(row)
+    table = pd.DataFrame({"pictures": list(groups), "number": [len(rows) for rows in groups.values()]})
+    for name, column in (("p = 0", columns), ("cyclic", cyclic)):
+        means = [estimate(rows[column]) for rows in groups.values()]
+        table[name], table[f"{name}, +-"] = [m.mean for m in means], [m.half for m in means]
+        for which, of in (("least", min), ("largest", max)):
+            table[f"{name}, {which}"] = [of(rows[column]) for rows in groups.values()]
     return Table("images-groups", "Mean efficiencies, with intervals of 95 %", table)
 
 
@@ -128,15 +123,15 @@ def comparisons_of(rows, columns, cyclic, pes):
     same = pes == papers.PES and first["scene"] == "centre" and first["side (pixels)"] == papers.SIZE
     name = "{0} at {1} x {1}".format(first["scene"], first["side (pixels)"])
     source = "of their most unbalanced image" if same else ""
-    return [Comparison(f"{name}, p = 0", "", papers.EFFICIENCY_0 if same else None, first[columns], source, True),
-            Comparison(f"{name}, cyclic", "", papers.EFFICIENCY_16 if same else None, first[cyclic], source, True),
+    return [*with_paper(same, [Comparison(f"{name}, p = 0", "", papers.EFFICIENCY_0, first[columns], source, True),
+                               Comparison(f"{name}, cyclic", "", papers.EFFICIENCY_16, first[cyclic], source, True)]),
             Comparison("lowest of all, p = 0", "", None, rows[columns].min(), "Kohata & Ito: varies strongly"),
             Comparison("highest of all, p = 0", "", None, rows[columns].max()),
             Comparison("lowest of all, cyclic", "", None, rows[cyclic].min(), "Kohata & Ito: high for all"),
             Comparison("highest of all, cyclic", "", None, rows[cyclic].max())]
 
 
-def plot_of(rows, columns, cyclic, pes, p):
+def plots_of(rows, groups, columns, cyclic, pes, p):
     """Scenes are numbered in the order of their first image, and named below the axis."""
     first = rows[rows["side (pixels)"] == rows["side (pixels)"].iloc[0]]
     names = [f"{i} {scene}" for i, scene in enumerate(first["scene"], 1)]
@@ -147,12 +142,8 @@ def plot_of(rows, columns, cyclic, pes, p):
     if pes == papers.PES and rows["scene"].iloc[0] == "centre":
         series.append(Series("Kohata & Ito, their worst image", [1, 1], [papers.EFFICIENCY_0, papers.EFFICIENCY_16],
                              "paper"))
-    return Plot("images", "Efficiency over the scenes", f"scene: {lines}", "efficiency", series)
-
-
-def plot_of_groups(groups, columns, cyclic):
-    """Efficiencies in ascending order: how many pictures have so little or less."""
-    series = [Series(f"{name}, {label}", 100 * np.arange(1, len(rows) + 1) / len(rows), np.sort(rows[column]), "steps")
-              for label, rows in groups.items() for name, column in (("cyclic", cyclic), ("p = 0", columns))]
-    return Plot("images-groups", "How many pictures are so efficient", "share of the pictures, ascending (%)",
-                "efficiency", series)
+    shares = [Series(f"{name}, {label}", 100 * np.arange(1, len(some) + 1) / len(some), np.sort(some[column]), "steps")
+              for label, some in groups.items() for name, column in (("cyclic", cyclic), ("p = 0", columns))]
+    return [Plot("images", "Efficiency over the scenes", f"scene: {lines}", "efficiency", series),
+            Plot("images-groups", "How many pictures are so efficient", "share of the pictures, ascending (%)",
+                 "efficiency", shares)]

@@ -3,9 +3,9 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, each_of, estimate, papers,
-                      prediction_text, range_text, settings_of_pass, study, verdict, verdict_among)
+                      prediction_text, range_text, study, verdict, verdict_among)
 from raya.lab.laboratory import VIEWS_PROSE
-from raya.lab.mappings import shortest_vector
+from raya.lab.mappings import shortest_square
 
 U_AND_VIEWS = """
 - u = (max load - mean load) / mean load, from one cost image: the load of a static mapping is the sum of its pixels'
@@ -33,24 +33,21 @@ GOOD = 0.9  # ours: the part of all that an offset of 0..n gains over p = 0, fro
 
 
 def page_of(name, lab, scenes, first):
-    scene, size, picture, views = balance_pass(lab, scenes, first)
-    offsets = range(size)
-    n = round(size**0.5)  # the paper's best
+    settings, picture, views = balance_pass(lab, scenes, first)
+    scene, size = settings["scene"], settings["size"]
+    offsets, n = range(size), round(size**0.5)  # n: the paper's best
     u = raya.imbalances(picture, size, offsets)
     of_views = np.array([raya.imbalances(view, size, offsets) for view in views])  # [view, offset]
     means = [estimate(column) for column in of_views.T]
-    best = of_views <= of_views[:, :n + 1].min(1, keepdims=True)
+    best = (of_views <= of_views[:, :n + 1].min(1, keepdims=True)).sum(0)
     rows = pd.DataFrame({
         "p": offsets, "u": u, "mean u": [m.mean for m in means], "+-": [m.half for m in means],
-        "least u": of_views.min(0), "largest u": of_views.max(0), f"best of 0..{n} (views)": best.sum(0),
-        "shortest vector (pixels)": [shortest_vector(p, size) for p in offsets]})
+        "least u": of_views.min(0), "largest u": of_views.max(0), f"best of 0..{n} (views)": best,
+        "shortest vector (pixels)": [shortest_square(p, size)**0.5 for p in offsets]})
     in_paper = first and papers.is_papers(scene, size)
-    near = rows[:n + 1]
-    place = "Fig. 8" if first else "Fig. 13"
-    claims = [claim_of_gain(place, of_views, n), claim_of_best(place, of_views, means, n)]
-    claims += [claim_of_half(place, of_views, n)] if first else []
-    claims += [claim_of_figure(place, of_views, means, n)] if in_paper else []
-    return Page(settings_of_pass(scene, size, views), findings_of(u, means, n, claims[1].why, len(views)),
+    near, place = rows[:n + 1], "Fig. 8" if first else "Fig. 13"
+    claims = claims_of(place, of_views, means, n, first, in_paper)
+    return Page(settings, findings_of(u, means, n, claims[1].why, len(views)),
                 comparisons_of(rows, of_views, n, in_paper), claims,
                 [Table(f"{name}-near", f"Offsets 0..{n}: the picture's u and that of {len(views)} views", near),
                  Table(name, "Imbalance for each offset", rows, on_page=False)],
@@ -61,42 +58,30 @@ def page_of(name, lab, scenes, first):
                 words={"tests": n}, beside=papers.SPA)
 
 
-def claim_of_gain(place, of_views, n):
+def claims_of(place, of_views, means, n, first, in_paper):
     gain = estimate(of_views[:, 0] - of_views[:, n])
-    return Claim(papers.SPA, place, "The cyclic mapping with p = n balances better than p = 0.",
-                 verdict(gain.low > 0, gain.high <= 0),
-                 f"u falls by {gain.text()} from p = 0 to p = {n} in the same view, {len(of_views)} views.")
-
-
-def claim_of_best(place, of_views, means, n):
     differences = [estimate(of_views[:, p] - of_views[:, n], each_of(n)) for p in range(n)]
     worse, better = sum(d.low > 0 for d in differences), sum(d.high < 0 for d in differences)
-    lowest = min(range(n + 1), key=lambda p: means[p].mean)
-    often = (of_views[:, n] <= of_views[:, :n + 1].min(1)).sum()
-    return Claim(papers.SPA, place, "Of the offsets 0..n on n x n PEs p = n gives the best balance.",
-                 verdict(worse == n, better > 0),
-                 f"Over {len(of_views)} views mean u is {means[n].text()} at p = {n}; the lowest of 0..{n} is that of "
-                 f"p = {lowest}, {means[lowest].text()}. Of the {n} other offsets {worse} are worse than p = {n} and "
-                 f"{better} are better with certainty; p = {n} is the best of them in {often} of {len(of_views)} "
-                 "views.")
-
-
-def claim_of_half(place, of_views, n):
-    gains = of_views[:, 0] - of_views[:, :n + 1].min(1)
+    lowest, best = min(range(n + 1), key=lambda p: means[p].mean), of_views[:, :n + 1].min(1)
+    gains, single = of_views[:, 0] - best, of_views[:, n]
     half = estimate(np.divide(of_views[:, 0] - of_views[:, n // 2], gains, out=np.ones_like(gains), where=gains > 0))
-    return Claim(papers.SPA, place, "The balance is already good at p = 8, half of n.",
-                 verdict(half.low >= GOOD, half.high < GOOD),
-                 f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; good is called a part "
-                 f"of {GOOD} or more.")
-
-
-def claim_of_figure(place, of_views, means, n):
-    single = of_views[:, n]
-    return Claim(papers.SPA, place, "u is 0.118 at p = 16 (derived from Table 3).",
-                 verdict_among(papers.IMBALANCE_16, single),
-                 f"Over {len(single)} views u(16) is {means[n].text()} in the mean and {range_text(single)} in single "
-                 "ones, so the figure of one picture is a draw: with 95 % it lies in "
-                 f"{prediction_text(single)}.")
+    claims = [("The cyclic mapping with p = n balances better than p = 0.", verdict(gain.low > 0, gain.high <= 0),
+               f"u falls by {gain.text()} from p = 0 to p = {n} in the same view, {len(of_views)} views."),
+              ("Of the offsets 0..n on n x n PEs p = n gives the best balance.", verdict(worse == n, better > 0),
+               f"Over {len(of_views)} views mean u is {means[n].text()} at p = {n}; the lowest of 0..{n} is that of p "
+               f"= {lowest}, {means[lowest].text()}. Of the {n} other offsets {worse} are worse than p = {n} and "
+               f"{better} are better with certainty; p = {n} is the best of them in {(single <= best).sum()} of "
+               f"{len(of_views)} views.")]
+    if first:
+        claims.append(("The balance is already good at p = 8, half of n.", verdict(half.low >= GOOD, half.high < GOOD),
+                       f"p = {n // 2} gains {half.text(2)} of what the best of 0..n gains over p = 0; good is called a "
+                       f"part of {GOOD} or more."))
+    if in_paper:
+        claims.append(("u is 0.118 at p = 16 (derived from Table 3).", verdict_among(papers.IMBALANCE_16, single),
+                       f"Over {len(single)} views u(16) is {means[n].text()} in the mean and {range_text(single)} in "
+                       "single ones, so the figure of one picture is a draw: with 95 % it lies in "
+                       f"{prediction_text(single)}."))
+    return [Claim(papers.SPA, place, *claim) for claim in claims]
 
 
 def findings_of(u, means, n, why_best, views):
@@ -130,8 +115,8 @@ def comparisons_of(rows, of_views, n, in_paper):
 
 def plots_of(name, scene, phase, rows, near, views, in_paper):
     mean, few = f"mean of {views} views", rows[rows["p"] % 4 == 0]
-    paper = [Series("Kohata & Ito, from their tables", [0, 16], [papers.IMBALANCE_0, papers.IMBALANCE_16], "paper")]
-    paper = paper if in_paper else []
+    paper = [Series("Kohata & Ito, from their tables", [0, 16], [papers.IMBALANCE_0, papers.IMBALANCE_16],
+                    "paper")] * in_paper
     return [Plot(name, f"Imbalance against the offset, {phase}", "offset p (pixels)", "u",
                  [Series(mean, near["p"], near["mean u"], half_widths=near["+-"]),
                   Series(f"{scene}, one picture", near["p"], near["u"]),

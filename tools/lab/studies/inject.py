@@ -11,7 +11,7 @@ From how many nodes on does the root hold the machine up?
 - One node has the whole scene in one voxel, and is its own root: where more nodes are more than so many times as fast,
   it is the grid's doing.
 """
-from raya.lab import Page, Plot, Series, Table, series_by, study
+from raya.lab import Page, Plot, Series, Table, holding_to_the_end, series_by, study
 from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers, run_on_torus, swept
 
 MOST, PART = 512, 1.1  # PART: times as long; more than this and the two ways have parted
@@ -23,20 +23,13 @@ COLUMNS = ("supersteps", "overlapped (ms)", "stepwise (ms)", "the root's process
 
 @study("inject", one_scene=True)
 def inject(lab, scenes):
-    scene = scenes[0] if scenes else even_scene(8320)
-    size = lab.size(64)
+    scene, size = scenes[0] if scenes else even_scene(8320), lab.size(64)
 
-    def run(nodes, inject):
-        return run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes), inject=inject)
-
-    rows = swept(CASES, run, COLUMNS)
+    rows = swept(CASES, lambda nodes, inject: run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes),
+                                                           inject=inject), COLUMNS)
     root, every = (rows[rows["inject"] == way].reset_index() for way in ("root", "all"))
     return Page({"scene": scene.name, "size": size, "nodes": MOST, "links": "torus3d", "format": "fp32",
-                 "bounces": BOUNCES},
-                [f"The whole machine waits for its root, overlapped: where the root makes all primary rays "
-                 f"{bound_text(root)}, where all nodes do {bound_text(every)}.",
-                 finding_of_limit(root, every), finding_of_parting(root, every), finding_of_making(every.iloc[-1]),
-                 finding_of_supersteps(root.iloc[-1], every.iloc[-1])],
+                 "bounces": BOUNCES}, findings_of(root, every),
                 tables=[Table("inject", "The root or all nodes make the primary rays",
                               rows.drop(columns=["primary", "run"]))],
                 plots=[Plot("inject", "Time against the number of nodes", "nodes", "modelled ms",
@@ -52,17 +45,8 @@ def inject(lab, scenes):
 
 def bound_text(rows):
     """The fewest nodes, two or more, from which on the machine waits for its root with every number of nodes."""
-    waits = (rows["root / overlapped (%)"] >= 100)[1:]
-    last_not = waits[~waits].index.max() if not waits.all() else 0
-    return f"from {rows['nodes'][last_not + 1]} nodes on" if last_not + 1 < len(rows) else "not with the most nodes"
-
-
-def finding_of_limit(root, every):
-    a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, every))
-    one = every["overlapped (ms)"][0]
-    return (f"Injection by the root ends at {a['overlapped (ms)']:.0f} ms on {a['nodes']} nodes, "
-            f"{one / a['overlapped (ms)']:.1f} times as fast as one node; by all nodes at {b['overlapped (ms)']:.0f} "
-            f"ms on {b['nodes']}, {one / b['overlapped (ms)']:.1f} times.")
+    nodes = holding_to_the_end(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
+    return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "not with the most nodes"
 
 
 def finding_of_parting(root, every):
@@ -75,13 +59,18 @@ def finding_of_parting(root, every):
             f"times as long; {last}.")
 
 
-def finding_of_making(row):
-    return (f"{row['nodes']} nodes that make their own primary rays make "
-            f"{1 + row['rays thrown away'] / row['primary']:.1f} for each that they keep, all of which they are "
-            "charged for: the other rays of their windows enter elsewhere.")
-
-
-def finding_of_supersteps(root, every):
-    return (f"Stepwise the root's way takes {root['stepwise (ms)'] / every['stepwise (ms)']:.2f} times as long with "
-            f"{root['nodes']} nodes, in {root['supersteps']} supersteps against {every['supersteps']}: the root makes "
-            "no more rays at a time than an eighth of its queue holds.")
+def findings_of(root, every):
+    a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, every))
+    one, last, all_last = every["overlapped (ms)"][0], root.iloc[-1], every.iloc[-1]
+    return [f"The whole machine waits for its root, overlapped: where the root makes all primary rays "
+            f"{bound_text(root)}, where all nodes do {bound_text(every)}.",
+            f"Injection by the root ends at {a['overlapped (ms)']:.0f} ms on {a['nodes']} nodes, "
+            f"{one / a['overlapped (ms)']:.1f} times as fast as one node; by all nodes at {b['overlapped (ms)']:.0f} "
+            f"ms on {b['nodes']}, {one / b['overlapped (ms)']:.1f} times.",
+            finding_of_parting(root, every),
+            f"{all_last['nodes']} nodes that make their own primary rays make "
+            f"{1 + all_last['rays thrown away'] / all_last['primary']:.1f} for each that they keep, all of which they "
+            "are charged for: the other rays of their windows enter elsewhere.",
+            f"Stepwise the root's way takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long with "
+            f"{last['nodes']} nodes, in {last['supersteps']} supersteps against {all_last['supersteps']}: the root "
+            "makes no more rays at a time than an eighth of its queue holds."]

@@ -3,7 +3,7 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import (Claim, Comparison, Page, Plot, Series, Table, balance_pass, estimate, papers, range_text,
-                      settings_of_pass, study, verdict, with_paper)
+                      study, verdict, with_paper)
 from raya.lab.laboratory import VIEWS_PROSE
 
 PROSE = """{figure}
@@ -31,19 +31,20 @@ def middle_and_sides(loads):
 
 
 def page_of(name, lab, scenes, first):
-    scene, size, picture, views = balance_pass(lab, scenes, first)
+    settings, picture, views = balance_pass(lab, scenes, first)
+    scene, size = settings["scene"], settings["size"]
     offsets = (0, 16 % size)
     own = [shares(picture, p) for p in offsets]
     of_views = [np.array([shares(view, p) for view in views]) for p in offsets]  # [view, PE]
-    u = [np.array([raya.imbalances(view, size, [p])[0] for view in views]) for p in offsets]
-    own_u = [raya.imbalances(picture, size, [p])[0] for p in offsets]
+    u = np.transpose([raya.imbalances(view, size, offsets) for view in views])  # [offset, view]
+    own_u = raya.imbalances(picture, size, offsets)
     rows = pd.DataFrame({"PE": range(size), "p = 0 (cycles)": raya.loads(picture, offset=0),
                          "p = 16 (cycles)": raya.loads(picture, offset=offsets[1])})
     for label, some in zip(("p = 0", "p = 16"), of_views):
         means = [estimate(column) for column in some.T]
         rows[f"{label}, mean of views"], rows[f"{label}, +-"] = [m.mean for m in means], [m.half for m in means]
     place, phase = ("Fig. 7", "first pass") if first else ("Fig. 12", "supersampling alone")
-    return Page({**settings_of_pass(scene, size, views), "offsets": list(offsets)}, findings_of(own, own_u, u),
+    return Page({**settings, "offsets": list(offsets)}, findings_of(own, own_u, u),
                 comparisons_of(own_u, u, first and papers.is_papers(scene, size)), claims_of(place, of_views),
                 [Table(name, "Load of each PE", rows, on_page=False)],
                 plots_of(name, scene, phase, rows, own, len(views)),
@@ -68,10 +69,9 @@ def comparisons_of(own_u, u, in_paper):
     figures = papers.IMBALANCE_0, papers.IMBALANCE_16
     remarks = ("calibrated on: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
     mean_u = [estimate(some) for some in u]
-    return with_paper(in_paper, [
-        *(Comparison(f"u({p})", "", figures[i], own_u[i], remarks[i], derived=True) for i, p in enumerate((0, 16))),
-        *(Comparison(f"u({p}), mean of views", "", figures[i], mean_u[i].mean, derived=True, half_width=mean_u[i].half)
-          for i, p in enumerate((0, 16)))])
+    own = [Comparison(f"u({p})", "", *some, True) for p, *some in zip((0, 16), figures, own_u, remarks)]
+    return with_paper(in_paper, own + [Comparison(f"u({p}), mean of views", "", figure, mean.mean, "", True, mean.half)
+                                       for p, figure, mean in zip((0, 16), figures, mean_u)])
 
 
 def claims_of(place, of_views):
@@ -88,8 +88,7 @@ def claims_of(place, of_views):
 
 def plots_of(name, scene, phase, rows, own, views):
     some = rows[rows["PE"] % max(len(rows) // 64, 1) == 0]
-    labels = ("p = 0, column split", "p = 16, cyclic mapping")
-    mean_line = Series("mean", [0, len(rows) - 1], [1, 1])
+    labels, mean_line = ("p = 0, column split", "p = 16, cyclic mapping"), Series("mean", [0, len(rows) - 1], [1, 1])
     return [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
                  [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
             Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {views} views", "PE", "load / mean load",

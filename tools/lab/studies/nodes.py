@@ -54,7 +54,7 @@ def waits_for(nodes, run):
 def nodes(lab, scenes):
     size = lab.size(64)
     some = scenes or [even_scene(8320), balls_scene(3)]
-    known, findings, comparisons, machines, by_scene = {}, [], [], [], []
+    known, findings, comparisons, by_scene = {}, [], [], []
     for scene in some:
         three, two, fixed = (series_of(lab, scene, size, *kind, known) for kind in
                              ((False, "torus3d"), (False, "torus2d"), (True, "torus3d")))
@@ -64,10 +64,9 @@ def nodes(lab, scenes):
             comparisons.append(Comparison(f"{best['scene']}, {best['voxels']}: best speed-up", "", None,
                                           best["speed-up, overlapped"], f"modelled, overlapped, {best['nodes']} nodes; "
                                           "Yoshitani & Yamazaki measured none"))
-        findings += [finding_of_speedup(fixed), finding_of_voxels(three, fixed), finding_of_links(three, two),
-                     finding_of_balance(three, fixed), finding_of_making(three, fixed)]
-        machines += [three, two, fixed]
-    rows = pd.concat(machines, ignore_index=True).drop(columns=["run", "balance"])
+        findings += [*findings_of_speedup(three, fixed), finding_of_links(three, two),
+                     *findings_of_making(three, fixed)]
+    rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns=["run", "balance"])
     return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": MOST,
                  "voxels": VOXELS, "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings, comparisons,
                 tables=[Table("nodes", "Every machine", rows)], plots=plots_of(by_scene),
@@ -76,22 +75,18 @@ def nodes(lab, scenes):
                 words={"launches": MOST_LAUNCHES})
 
 
-def finding_of_speedup(rows):
-    best = rows.loc[rows["overlapped (ms)"].idxmin()]
-    half = rows["nodes"][(rows["efficiency, overlapped"] >= 0.5).cummin()].iloc[-1]
-    return (f"{best['scene']}, {best['voxels']} voxels on every machine: {best['nodes']} nodes are fastest, "
+def findings_of_speedup(one, fixed):
+    (best, own), first = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (fixed, one)), one.iloc[0]
+    half = fixed["nodes"][(fixed["efficiency, overlapped"] >= 0.5).cummin()].iloc[-1]
+    return [f"{best['scene']}, {best['voxels']} voxels on every machine: {best['nodes']} nodes are fastest, "
             f"{best['speed-up, overlapped']:.1f} times as fast as one (overlapped; stepwise "
             f"{best['speed-up, stepwise']:.1f} times), and what they wait for is {best['waits for']}. Half of the "
-            f"nodes' power or more is used up to {half} nodes.")
-
-
-def finding_of_voxels(one, fixed):
-    best, first = one.loc[one["overlapped (ms)"].idxmin()], one.iloc[0]
-    return (f"{first['scene']}, one voxel a node: {best['nodes']} nodes are {best['speed-up, overlapped']:.0f} times "
-            f"as fast as one, but that one has no grid: {first['tests a ray'] / max(1e-9, best['tests a ray']):.1f} "
-            f"times as many tests a ray, {first['tests a ray']:.1f} beside {best['tests a ray']:.1f}. With one node "
-            f"and {fixed['voxels'][0]} voxels it is {first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times "
-            "as fast already.")
+            f"nodes' power or more is used up to {half} nodes.",
+            f"{first['scene']}, one voxel a node: {own['nodes']} nodes are {own['speed-up, overlapped']:.0f} times "
+            f"as fast as one, but that one has no grid: {first['tests a ray'] / max(1e-9, own['tests a ray']):.1f} "
+            f"times as many tests a ray, {first['tests a ray']:.1f} beside {own['tests a ray']:.1f}. With one node "
+            f"and {best['voxels']} voxels it is {first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times "
+            "as fast already."]
 
 
 def finding_of_links(three, two):
@@ -105,23 +100,21 @@ def finding_of_links(three, two):
             f"of nodes {ratios.min():.2f} to {ratios.max():.2f}.")
 
 
-def finding_of_balance(one, fixed):
+def findings_of_making(one, fixed):
     a, b = ((rows[rows["nodes"] == 64] if (rows["nodes"] == 64).any() else rows).iloc[-1] for rows in (one, fixed))
     last = fixed.iloc[-1]
-    return (f"{a['scene']}, balance: u of {a['nodes']} nodes is {a['u']:.2f} with a voxel each and {b['u']:.2f} with "
-            f"{b['voxels']} voxels laid out cyclically, {SIDES**3 // b['nodes']} a node; of {last['nodes']} nodes "
-            f"{last['u']:.2f}.")
 
-
-def finding_of_making(one, fixed):
     def text(rows):
         most = rows.loc[rows["rays thrown away"].idxmax()]
         kept = most["rays thrown away"] / most["run"].events["primary"]
         how = "a voxel each" if most["voxels"] == "one a node" else f"{most['voxels']} voxels laid out cyclically"
         return f"{1 + kept:.1f} with {how} ({most['nodes']} nodes)"
 
-    return (f"{one['scene'][0]}: nodes that make their own primary rays make up to {text(one)} for each that is kept, "
-            f"up to {text(fixed)}; what is discarded is charged.")
+    return [f"{a['scene']}, balance: u of {a['nodes']} nodes is {a['u']:.2f} with a voxel each and {b['u']:.2f} with "
+            f"{b['voxels']} voxels laid out cyclically, {SIDES**3 // b['nodes']} a node; of {last['nodes']} nodes "
+            f"{last['u']:.2f}.",
+            f"{a['scene']}: nodes that make their own primary rays make up to {text(one)} for each that is kept, up to "
+            f"{text(fixed)}; what is discarded is charged."]
 
 
 def plots_of(by_scene):

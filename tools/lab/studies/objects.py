@@ -9,29 +9,25 @@ Are random objects slower than even ones, is it for their copies, and why does t
   of the object come to them; a ray brings home one return of 6 words, from where its shadow ray ends. Raya: every node
   makes the primary rays that enter at its voxel, and is charged for those that it makes and discards; a ray packet has
   16 words; each term of a ray, its ambient light, a light or the background, is a return of 8.
-- The returns of a ray are moved apart, so that the image is the same bit for bit; by the protocol of Yoshitani &
-  Yamazaki they are charged as one message. What is shaded is charged where the ray hits, by either protocol.
+- The returns of a ray are moved apart, so that the image is the same; by the protocol of Yoshitani & Yamazaki they are
+  charged as one message. What is shaded is charged where the ray hits.
 - Even: every voxel holds as many spheres, each within its voxel.
 - Random: the even scene's spheres, their radii, surfaces, light and view, about centres drawn from the cube and moved
   into it where they stick out; {seeds} scenes.
-- Random, none astride: the random spheres moved, each by little more than its radius, until each lies within the voxel
-  of its centre. As many lie in each voxel, but no sphere is in two: what separates copies from crowds.
+- Random, none astride: the random spheres moved until each lies within the voxel of its centre. As many lie in each
+  voxel, but no sphere is in two: what separates copies from crowds.
 - In all three the outermost spheres touch the sides of one cube, so that all have the same voxels. Registration takes
-  each for larger by up to a 16th of a voxel's side, for the rounding of rays from afar; even spheres and those moved
-  keep that far from the sides of their voxels where they have the room.
-- After +- stands the half width of a 95 % confidence interval over the random scenes, by Student's t. Random is slower
-  where the whole interval of random over even lies above 1, else not slower where it lies below 1.02; the claim is
-  reproduced where all numbers of objects are slower, not reproduced where none is and half of them or more are not, and
-  where some are and some are not it cannot be told. Asynchronous is the machine that they describe, simulated packet by
-  packet: two tasks a node, links that carry while nodes compute, finite buffers. A claim is judged by it; overlapped
-  and stepwise, where nothing or everything waits, stand next to it.
-- How deep primary rays go is counted in a render without lights.
-- Why time grows less than the objects, from the fewest to the most of them, overlapped: objects over time is the
-  product of four ratios. Voxels that all rays enter; tests in a voxel, over the objects; the work of all nodes, over
-  the tests; the machine's time, over that work.
+  each for larger by up to a 16th of a voxel's side; even spheres and those moved keep that far from the sides.
+- Random is slower where the whole interval of random over even lies above 1, else not slower where it lies below 1.02;
+  the claim is reproduced where all numbers of objects are slower, not reproduced where none is and half of them or more
+  are not. It is judged by the asynchronous machine, the one that they describe, simulated packet by packet: two tasks a
+  node, links that carry while nodes compute, finite buffers; overlapped and stepwise, where nothing or everything
+  waits, stand next to it.
+- How deep primary rays go is counted without lights. Why time grows less than the objects, from the
+  fewest to the most of them, overlapped: objects over time is a product of four ratios, see its table.
 - Time counts as linear where objects over time is less than 1.1. The reason that Yoshitani & Yamazaki give, rays that
   end earlier, is the right one where fewer voxels a ray explain more than half of the product, by logarithms, for even
-  and for random objects. Both by the whole interval; where it holds the limit the claim cannot be told.
+  and for random objects.
 """
 import numpy as np
 import pandas as pd
@@ -94,8 +90,8 @@ def objects(lab, scenes):
     growth = [(kind, protocol, growth_of(runs[COUNTS[0], kind, protocol], runs[COUNTS[-1], kind, protocol]))
               for protocol in PROTOCOLS for kind in (EVEN, RANDOM)]
     depths, words = pd.DataFrame(depths), pd.DataFrame(words)
-    more = (["The scenes that were named are not in it: the study makes its own, as the scenes of Yoshitani & Yamazaki "
-             "were."] if scenes else [])
+    more = ["The scenes that were named are not in it: the study makes its own, as the scenes of Yoshitani & Yamazaki "
+            "were."] if scenes else []
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
                  "words": papers.RAY_WORDS, "seeds": SEEDS, "objects": list(COUNTS)},
                 findings_of(runs, rows, ratios, growth, depths, words) + more,
@@ -110,23 +106,20 @@ def row_of(key, runs):
     count, kind, protocol = key
     columns = ("copies", "tests a ray", "steps a ray", "returns", "rays thrown away", "u")
     row = {"objects": count, "kind": kind, "protocol": protocol, "scenes": len(runs),
-           **{column: np.mean([run.row([column])[column] for run in runs]) for column in columns}}
+           **pd.DataFrame([run.row(columns) for run in runs]).mean()}
     for time in TIMES:
         e = estimate([getattr(run, f"{time}_ms") for run in runs])
         row[f"{time} (ms)"], row[f"{time} +- (ms)"] = e.mean, e.half
-    row["busiest node computes (ms)"] = np.mean([run.compute_ms for run in runs])
-    row["the root alone (ms)"] = np.mean([run.root_ms for run in runs])
-    return row
+    return {**row, "busiest node computes (ms)": np.mean([run.compute_ms for run in runs]),
+            "the root alone (ms)": np.mean([run.root_ms for run in runs])}
 
 
 def ratio_of(runs, count, kind, protocol):
     """Random scenes over the even one of as many objects: times as long."""
-    even = runs[count, EVEN, protocol][0]
-    row = {"objects": count, "kind": kind, "protocol": protocol}
-    for time in TIMES:
-        row[time] = estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms")
-                              for run in runs[count, kind, protocol]])
-    return row
+    even, some = runs[count, EVEN, protocol][0], runs[count, kind, protocol]
+    return {"objects": count, "kind": kind, "protocol": protocol,
+            **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run in some])
+               for time in TIMES}}
 
 
 def growth_of(first, last):
@@ -198,8 +191,8 @@ def findings_of(runs, rows, ratios, growth, depths, words):
     longer = words["overlapped (ms)"].values / even["overlapped (ms)"][words["objects"]].values
     more = ", ".join(f"{w['words a ray']:.0f} words take {times:.2f} times as long ({w['objects']:.0f} objects)"
                      for times, (_, w) in zip(longer, words.iterrows()))
-    return [finding_of_random(ratios, PAPER), finding_of_root(rows, PAPER), finding_of_random(ratios, OWN),
-            finding_of_root(rows, OWN), copies, *(finding_of_growth(*one) for one in growth),
+    return [*findings_of_protocol(rows, ratios, PAPER), *findings_of_protocol(rows, ratios, OWN), copies,
+            *(finding_of_growth(*one) for one in growth),
             f"A primary ray in the box goes through {va:.2f} voxels where there are {a['objects']} even objects and "
             f"through {vb:.2f} where there are {b['objects']}, {va / vb:.2f} times fewer; {a[end]:.0f} % and "
             f"{b[end]:.0f} % end in the first one.",
@@ -209,21 +202,16 @@ def findings_of(runs, rows, ratios, growth, depths, words):
             f"Larger ray packets than the {papers.RAY_WORDS} words of Table 1, overlapped: {more}."]
 
 
-def finding_of_random(ratios, protocol):
-    some = of(ratios, RANDOM, protocol)
-    return (f"Protocol of {protocol}: random over even is {texts_of(some, 'asynchronous')} without supersteps, "
-            f"{texts_of(some, 'overlapped')} overlapped, {texts_of(some, 'stepwise')} stepwise (objects in brackets).")
-
-
-def finding_of_root(rows, protocol):
-    even = of(rows, EVEN, protocol)
+def findings_of_protocol(rows, ratios, protocol):
+    some, even = of(ratios, RANDOM, protocol), of(rows, EVEN, protocol)
+    yield (f"Protocol of {protocol}: random over even is {texts_of(some, 'asynchronous')} without supersteps, "
+           f"{texts_of(some, 'overlapped')} overlapped, {texts_of(some, 'stepwise')} stepwise (objects in brackets).")
     bound = even[even["the root alone (ms)"] >= even["overlapped (ms)"]]
-    if not len(bound):
-        return f"Protocol of {protocol}: in no even scene does the machine wait for the root."
     ms = bound["the root alone (ms)"]
-    return (f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the machine waits for "
-            f"the root, {ms.min():.0f} to {ms.max():.0f} ms; there the time is that of making rays and taking in "
-            "returns, not of the objects.")
+    yield (f"Protocol of {protocol}: in no even scene does the machine wait for the root." if not len(bound) else
+           f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the machine waits for "
+           f"the root, {ms.min():.0f} to {ms.max():.0f} ms; there the time is that of making rays and taking in "
+           "returns, not of the objects.")
 
 
 def finding_of_growth(kind, protocol, rows):
@@ -232,20 +220,16 @@ def finding_of_growth(kind, protocol, rows):
             f"{estimate(rows['time']).text(2)} times the time, {estimate(rows['objects / time']).text(2)} times less "
             f"than in proportion. As a product: {mean['fewer voxels a ray']:.2f} as rays go through fewer voxels, "
             f"{mean['tests a voxel grow less']:.2f} as a voxel's tests grow less than the objects, "
-            f"{mean['fixed costs']:.2f} for what does not depend on objects, "
-            f"{mean['one node' + chr(39) + 's bound']:.2f} for what one node or link holds up.")
+            f"{mean['fixed costs']:.2f} for what does not depend on objects, {mean.iloc[-1]:.2f} for what one node or "
+            "link holds up.")
 
 
 def tables_of(rows, ratios, growth, depths, words):
     spread = ratios[["objects", "kind", "protocol"]].copy()
     for time in TIMES:
         spread[time], spread[f"{time} +-"] = [e.mean for e in ratios[time]], [e.half for e in ratios[time]]
-    factors = []
-    for kind, protocol, some in growth:
-        mean = some.mean().to_dict()
-        head = {"kind": kind, "protocol": protocol, "objects": mean.pop("objects"), "time": mean.pop("time"),
-                "objects / time": mean.pop("objects / time"), "+-": estimate(some["objects / time"]).half}
-        factors.append({**head, **mean})
+    factors = pd.DataFrame([{"kind": kind, "protocol": protocol, **some.mean()} for kind, protocol, some in growth])
+    factors.insert(5, "+-", [estimate(some["objects / time"]).half for *_, some in growth])
     return [Table("objects", "Time and work for each number of objects", rows),
             Table("objects-ratios", "Random over even", spread),
             Table("objects-growth", "Why time grows less than the objects: objects / time as a product", factors),

@@ -3,13 +3,12 @@
 Is every offset beyond sqrt(P) = {reference} worse, as Kohata & Ito say?
 
 - {labels} at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass. Views are of the seeds 1, 2,
-  ..., as in Fig. 8: {pictures} pictures. Intervals are of 95 %.
+  ..., as in Fig. 8: {pictures} pictures.
 - The pixels of a PE form a lattice. Its shortest vector, the least distance between two pixels of one PE, says how
   well an offset can spread what is costly; measured in the image, and the same on the torus.
 - Offsets are compared with p = {reference}, vector {length} pixels; p = {mirror}, its mirror, is in no group.
   Differences are of the same picture.
-- "0..n is enough" is reproduced where no offset beyond gains 0.02 of the mean load over the best of 0..n, and not
-  reproduced where one does, all together with 95 % (Bonferroni).
+- "0..n is enough" where no offset beyond gains 0.02 of the mean load, all together with 95 % (Bonferroni).
 """
 import numpy as np
 import pandas as pd
@@ -23,13 +22,13 @@ from scipy.stats import rankdata, spearmanr
 NOTHING = 0.02  # ours: a part of the mean load that is no gain worth an offset
 OTHERS = 16  # views of each scene but the first, whose views Fig. 8 has too
 CORRELATED = -0.5
+OWN = "centre", "mirrors", "glass", "random-12", "random-30"
 
 
 @study("lattice")
 def lattice(lab, scenes):
     size = lab.size(256)
-    some = scenes or [s for s in paper_like_scenes()
-                      if s.name in ("centre", "mirrors", "glass", "random-12", "random-30")]
+    some = scenes or [s for s in paper_like_scenes() if s.name in OWN]
     views = {s.name: lab.ensemble(s, size, "none", VIEWS if i == 0 else OTHERS).views for i, s in enumerate(some)}
     of_scene = {name: np.array([raya.imbalances(view.trace, size, range(size)) for view in all_of])
                 for name, all_of in views.items()}
@@ -47,7 +46,7 @@ def lattice(lab, scenes):
         "n x n blocks shared": ["yes" if shares_blocks(p, size, n) else "no" for p in range(size)]})
     wins = (u < u[:, n:n + 1]).sum(0)
     best = int(rows["mean u"].idxmin())
-    chosen = [0, n, *longer, *as_long] + ([best] if best not in [0, n, *longer, *as_long] else [])
+    chosen = list(dict.fromkeys([0, n, *longer, *as_long, best]))
     table = rows.loc[chosen, ["p", "shortest vector (pixels)", "mean u", "+-", "mean rank"]].rename(
         columns={"mean rank": f"mean rank of {size}"})
     table[f"pictures better than p = {n}"] = wins[chosen]
@@ -60,11 +59,7 @@ def lattice(lab, scenes):
                 [claim_of_blocks(rows, n)] + ([claim_of_enough(u, means, n)] if len(u) > 1 else []),
                 [Table("lattice-chosen", f"p = 0, p = {n}, those that spread as well or better, and the best of all",
                        table), Table("lattice", "Every offset", rows, on_page=False)],
-                [plot_of(rows, n, longer, as_long, len(u), "lattice", "shortest vector (pixels)", "points",
-                         "Imbalance against the shortest distance between two pixels of a PE",
-                         "shortest vector of the lattice (pixels)"),
-                 plot_of(rows, n, longer, as_long, len(u), "lattice-offsets", "p", "line",
-                         "Imbalance against the offset", "offset p (pixels)")],
+                [*plots_of(rows, n, longer, as_long, len(u))],
                 ["The lattice of an offset is not in Kohata & Ito. It names the offsets beyond sqrt(P) that spread as "
                  "well, and shows why those near the rest do not."],
                 words={"labels": labels, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, beside=papers.SPA)
@@ -144,11 +139,13 @@ def comparisons_of(rows, n, longer, as_long, correlations):
                                 "mean of the pictures")]
 
 
-def plot_of(rows, n, longer, as_long, pictures, name, x, style, title, x_label):
-    def points(label, offsets):
-        some = rows.loc[offsets]
-        return Series(label, some[x], some["mean u"], "points", some["+-"])
-
-    return Plot(name, title, x_label, f"u, mean of {pictures} pictures",
-                [Series("every offset", rows[x], rows["mean u"], style), points(f"beyond {n}, longer vector", longer),
-                 points(f"beyond {n}, as long", as_long), points(f"p = {n}", [n])], "y")
+def plots_of(rows, n, longer, as_long, pictures):
+    groups = {f"beyond {n}, longer vector": longer, f"beyond {n}, as long": as_long, f"p = {n}": [n]}
+    for name, title, x, x_label, style in (
+            ("lattice", "Imbalance against the shortest distance between two pixels of a PE",
+             "shortest vector (pixels)", "shortest vector of the lattice (pixels)", "points"),
+            ("lattice-offsets", "Imbalance against the offset", "p", "offset p (pixels)", "line")):
+        points = [Series(label, some[x], some["mean u"], "points", some["+-"]) for label, offsets in groups.items()
+                  for some in [rows.loc[offsets]]]
+        yield Plot(name, title, x_label, f"u, mean of {pictures} pictures",
+                   [Series("every offset", rows[x], rows["mean u"], style), *points], "y")

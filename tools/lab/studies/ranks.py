@@ -14,15 +14,13 @@ How many MPI ranks are worth having, and from where on do they talk more than th
   cycles, all else goes with the nodes of the largest brick; faces take alpha for each message and beta for each byte
   that a rank sends or receives, whichever is more, of the rank with most; the status of all nodes goes to every rank in
   log2 R rounds. Supersteps, cycles and words of links are counted in one render.
-- More than 512 ranks have a torus with a node for each, assumed: nodes are cut further, so supersteps grow with its
-  side, a node's cycles in one shrink with its voxel and its words with a face of that, and rank 0's host looks at so
-  many more nodes.
+- More than 512 ranks have a torus with a node for each, assumed: supersteps grow with its side, a node's cycles in one
+  shrink with its voxel and its words with a face of that, and rank 0's host looks at so many more nodes.
 - Times of the model do not include what commands to the device cost beyond one rank's, collisions of messages, or
   waiting for a rank that is late for another reason.
-- Networks: alpha and beta fitted to a ping-pong of `raya ping` (minimum of up to 300 turns for each of nine lengths, 1
-  B to 4 MB), two that are assumed, and one that is given, where it is (`--network`). Measured: `mpirun -n R raya
-  render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one thread a rank; the model is
-  compared with the minimum.
+- Networks: fitted to a ping-pong of `raya ping`, two that are assumed, and one that is given (`--network`).
+  Measured: `mpirun -n R raya render`, up to {turns} of each in turn after a warm-up, none after {enough} s of them, one
+  thread a rank; the model is compared with the minimum.
 - Scaling, measured the same way: strong has the same picture on more ranks; weak has pixels in proportion to ranks on
   the ring, and objects, spread evenly, on the torus. Efficiency is the work (modelled cycles) that a core does in a
   second, by the minimum, over that of one rank.
@@ -73,11 +71,10 @@ def measure(renders, device, enough_s=ENOUGH_S):
     trials = {ranks: ([], None) for ranks in renders}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():
-            if sum(seconds) >= enough_s:
-                continue
-            report = render_on_ranks(ranks, renders[ranks])
-            s = report["measured"]["render_s"]
-            trials[ranks] = (seconds + [s], report if not seconds or s < min(seconds) else best)
+            if sum(seconds) < enough_s:
+                report = render_on_ranks(ranks, renders[ranks])
+                s = report["measured"]["render_s"]
+                trials[ranks] = (seconds + [s], report if not seconds or s < min(seconds) else best)
     return trials
 
 
@@ -141,8 +138,7 @@ def ranks(lab, scenes):
     return Page({"scene": on_ring.name, "torus_scene": on_torus.name, "size": size, "torus_size": size,
                  "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": ENOUGH_S, "alpha_s": ping["alpha_s"],
                  "beta_s_per_byte": ping["beta_s_per_byte"]},
-                [*(finding_of_machine(summary, name) for name in ("ring", "torus")), finding_of_checks(checks),
-                 finding_of_scaling(scaling), finding_of_others(others), finding_of_network(ping)],
+                findings_of_model(summary, checks) + findings_of_measures(scaling, others, ping),
                 [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None,
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
@@ -196,50 +192,41 @@ def summary_of(key, some):
             "speed-up": best["speed-up"]}
 
 
-def finding_of_machine(summary, machine):
-    some = summary[summary["machine"] == machine]
-    halves = ", ".join(f"{'no number of' if pd.isna(r['half at (ranks)']) else int(r['half at (ranks)'])} ranks "
-                       f"({r['network']})" for _, r in some.iterrows())
-    fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
-                        for _, r in some.iterrows())
-    return (f"{machine}: communication takes half of the time on {halves}. The fewest seconds are had on so many "
-            f"ranks: {fastest}.")
-
-
-def finding_of_checks(checks):
-    more = checks[checks["ranks"] > 1]
+def findings_of_model(summary, checks):
+    findings, more = [], checks[checks["ranks"] > 1]
+    for machine, some in summary.groupby("machine", sort=False):
+        halves = ", ".join(f"{'no number of' if pd.isna(r['half at (ranks)']) else int(r['half at (ranks)'])} ranks "
+                           f"({r['network']})" for _, r in some.iterrows())
+        fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
+                            for _, r in some.iterrows())
+        findings.append(f"{machine}: communication takes half of the time on {halves}. The fewest seconds are had on "
+                        f"so many ranks: {fastest}.")
 
     def text(some):
         ratio = some["predicted / measured"]
         return f"{ratio.min():.2f} to {ratio.max():.2f}" if len(some) else "(none)"
 
     shared = more["cores"] < more["ranks"]
-    return (f"On the ranks that can be measured here the prediction is {text(more[~shared])} times the measured time "
-            f"where each rank has a core, and {text(more[shared])} times where ranks share cores; the minimum of up to "
-            f"{TURNS} renders each.")
+    return findings + [
+        f"On the ranks that can be measured here the prediction is {text(more[~shared])} times the measured time where "
+        f"each rank has a core, and {text(more[shared])} times where ranks share cores; the minimum of up to {TURNS} "
+        "renders each."]
 
 
-def finding_of_scaling(scaling):
-    def text(machine, name):
-        some = scaling[(scaling["machine"] == machine) & (scaling["scaling"] == name) & (scaling["ranks"] > 1)]
-        return ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}" for _, r in some.iterrows())
-
-    kinds = [f"{machine}, {name}: {text(machine, name)}" for machine in ("ring", "torus") for name in ("strong", "weak")]
-    return f"Measured efficiency against one rank of one core: {'; '.join(kinds)}."
-
-
-def finding_of_others(share):
-    if share <= QUIET:
-        return f"While this was measured other programs had {100 * share:.1f} % of this host's processors."
-    return (f"While this was measured other programs had {100 * share:.0f} % of this host's processors: ranks waited "
-            "for one another, and times of several ranks say little. To be repeated when the host is quiet.")
-
-
-def finding_of_network(ping):
+def findings_of_measures(scaling, share, ping):
+    """share: of the host's processors, what other programs had."""
+    kinds = [f"{machine}, {name}: " + ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}"
+                                                for _, r in some[some["ranks"] > 1].iterrows())
+             for (machine, name), some in scaling.groupby(["machine", "scaling"], sort=False)]
+    others = (f"While this was measured other programs had {100 * share:.1f} % of this host's processors." if share <=
+              QUIET else
+              f"While this was measured other programs had {100 * share:.0f} % of this host's processors: ranks waited "
+              "for one another, and times of several ranks say little. To be repeated when the host is quiet.")
     first, last = ping["messages"][0], ping["messages"][-1]
-    return (f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
+    return [f"Measured efficiency against one rank of one core: {'; '.join(kinds)}.", others,
+            f"A message between two ranks here ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
             f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte by the fit; one byte took {1e6 * first['seconds']:.2f} us, "
-            f"and 4 MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s.")
+            f"and 4 MB went at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s."]
 
 
 def tables_of(rows, checks, scaling, summary, networks, ping):

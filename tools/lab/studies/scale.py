@@ -48,8 +48,7 @@ def efficiencies(image):
 
 @study("scale", one_scene=True)
 def scale(lab, scenes):
-    scene = one_of(scenes)
-    side = lab.size(1024)
+    scene, side = one_of(scenes), lab.size(1024)
     ensemble = lab.ensemble(scene, side, "none", VIEWS)
     image = ensemble.picture.trace
     rows = efficiencies(image)
@@ -57,10 +56,13 @@ def scale(lab, scenes):
     between = (rows["P"] > side) & (rows["P"] < side * side)
     largest = int(image.max()) * image.size / int(image.sum())  # pixel, in mean pixels
     halves = pd.DataFrame([half_of(name, rows) for name in ["upper bound", *PLAIN, *FOLDED]])
+    texts = [f"{name}: {pes or 'none'}" for name, pes, _ in halves[1:1 + len(PLAIN)].itertuples(index=False)]
     means = means_of(of_views)
     return Page({"scene": scene.name, "size": side, "pes": rows["P"].tolist(), "offset": 16 % side, "seed": 1,
                  "views": len(of_views)},
-                [finding_of_half(halves), finding_of_2d(rows[between]), finding_of_resonance(rows[between], side),
+                [f"PEs up to which half of the array's power or more is used: {'; '.join(texts)}; whole pixels, "
+                 f"however given out: {halves.iloc[0, 1]}.",
+                 finding_of_2d(rows[between]), finding_of_resonance(rows[between], side),
                  f"The largest pixel costs {largest:.1f} times the mean one, so no distribution of whole pixels gains "
                  f"more than {side * side / largest:.0f} times; that is what a PE for each pixel gives whatever the "
                  f"mapping, an efficiency of {1 / largest:.3f}."],
@@ -78,10 +80,9 @@ def scale(lab, scenes):
 
 def half_of(name, rows):
     """The last P up to which the efficiency is 50 % or more, and the speed-up there; 0: never."""
-    count = int((rows[name] >= HALF).cummin().sum())
-    pes = rows["P"][count - 1] if count else 0
-    return {"mapping": name, "50 % or more up to P": pes,
-            "speed-up there": rows[name][count - 1] * pes if count else 0.0}
+    some = rows[(rows[name] >= HALF).cummin()]
+    pes, efficiency = some[["P", name]].iloc[-1] if len(some) else (0, 0.0)
+    return {"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes}
 
 
 def means_of(of_views):
@@ -90,12 +91,6 @@ def means_of(of_views):
         estimates = [estimate(column) for column in np.array([v[name] for v in of_views]).T]
         table[name], table[f"{name}, +-"] = [e.mean for e in estimates], [e.half for e in estimates]
     return pd.DataFrame(table)
-
-
-def finding_of_half(halves):
-    texts = [f"{name}: {pes or 'none'}" for name, pes, _ in halves[1:1 + len(PLAIN)].itertuples(index=False)]
-    return (f"PEs up to which half of the array's power or more is used: {'; '.join(texts)}; whole pixels, however "
-            f"given out: {halves.iloc[0, 1]}.")
 
 
 def finding_of_2d(between):
@@ -116,11 +111,9 @@ def finding_of_2d(between):
 def finding_of_resonance(between, side):
     """With s = P / W rows from one row of a PE to its next, p shifts these by s p columns: not at all for multiples of
     W."""
-    words = []
-    for name in (FIXED, ROOT, LIKE):
-        lost = [p for p in between["P"] if p % side == 0 and p // side * (OFFSETS[name](side, p) % side) % side == 0]
-        if lost:
-            words.append(f"{name} for P = {', '.join(map(str, lost))}")
+    lost = {name: [str(p) for p in between["P"] if p % side == 0 and p // side * OFFSETS[name](side, p) % side == 0]
+            for name in (FIXED, ROOT, LIKE)}
+    words = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
     if not words:
         return "No offset here falls back to the column split where PEs share the rows of a slot."
     return ("Where PEs share the rows of a slot, an offset can cancel out: P / W rows further on the shift is a "

@@ -13,8 +13,7 @@ Does another simulator take as long for the same history on the same machine?
   ways share. SimGrid's own torus lets a message hold all links of its way at once; transputers store it in every node.
 - Effects are switched on one after another, each machine having all that the one before has: computing alone, in which
   messages take no time; the processors' part of messages; links of 1.7 MB/s each way; both ways sharing 2.4 MB/s;
-  finite buffers.
-- Effects on the plot are numbered from 0 in that order.
+  finite buffers. On the plot they are numbered from 0.
 """
 import os
 import tempfile
@@ -47,10 +46,8 @@ def ask_simgrid(result, changes):
         messages = result.write_replay(platform, replay, **changes)
         words = output_of([beside_raya("simgrid_replay"), platform, replay, "--log=root.thres:error"],
                           "simgrid_replay").split()
-    if words[0::2] != ["finish_ms", "delivered"]:
-        raise raya.InputError("simgrid_replay: does not print its time")
-    if int(words[3]) != messages:
-        raise raya.InputError(f"simgrid_replay: {words[3]} of {messages} messages delivered")
+    if words[0::2] != ["finish_ms", "delivered"] or int(words[3]) != messages:
+        raise raya.InputError(f"simgrid_replay: does not deliver {messages} messages, but prints {' '.join(words)}")
     return messages, float(words[1])
 
 
@@ -72,46 +69,40 @@ def rows_of(lab, scene, size, links, inject):
 
 @study("simgrid", one_scene=True, lacks=lacks)
 def simgrid(lab, scenes):
-    scene = scenes[0] if scenes else even_scene(512)
-    size = lab.size(48)
+    scene, size = scenes[0] if scenes else even_scene(512), lab.size(48)
     rows = pd.DataFrame([row for links in ("torus3d", "torus2d") for inject in ("root", "all")
                          for row in rows_of(lab, scene, size, links, inject)])
     whole = rows[rows["machine"] == list(EFFECTS)[-1]]
-    series = []
-    for (shape, inject), some in rows.groupby(["torus", "inject"], sort=False):
-        series += [Series(f"{shape}, {inject}, raya", range(len(some)), some["raya (ms)"]),
-                   Series(f"{shape}, {inject}, SimGrid", range(len(some)), some["SimGrid (ms)"], "points")]
+    series = [Series(f"{shape}, {inject}, {who}", range(len(some)), some[f"{who} (ms)"], style)
+              for (shape, inject), some in rows.groupby(["torus", "inject"], sort=False)
+              for who, style in (("raya", "line"), ("SimGrid", "points"))]
     bounds = [f"{row['torus']}, inject {row['inject']}: the whole machine takes {row['raya (ms)']:.1f} ms, between "
               f"{row['overlapped']:.1f} ms if nothing waited and {row['stepwise']:.1f} ms step by step."
               for _, row in whole.iterrows()]
     return Page({"scene": scene.name, "size": size, "nodes": "4x4x4", "buffer": BUFFER, "goal": GOAL},
-                [finding_of_goal(rows), finding_of_effects(rows), *bounds],
+                findings_of(rows) + bounds,
                 [Comparison(f"{row['torus']}, {row['inject']}, the whole machine, ours / SimGrid", "", None,
                             row["raya (ms)"] / row["SimGrid (ms)"], "modelled, asynchronous")
                  for _, row in whole.iterrows()],
                 tables=[Table("simgrid", "Time of one history, by raya and by SimGrid",
                               rows.drop(columns=["overlapped", "stepwise"]))],
-                plots=[Plot("simgrid", "Time of the machine, one effect after "
-                                       "another", "effects", "modelled ms", series)],
+                plots=[Plot("simgrid", "Time of the machine, one effect after another", "effects", "modelled ms",
+                            series)],
                 news=["The asynchronous torus is compared with a simulator that others wrote; neither paper has been."],
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
 
 
-def finding_of_goal(rows):
+def findings_of(rows):
+    """Whether the two are near one another; the effect, other than computing itself, that takes most."""
     worst = rows.loc[rows["difference (%)"].abs().idxmax()]
     most, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
-    if most <= GOAL:
-        return (f"On all {len(rows)} machines the two times lie within {GOAL} % of one another; the most that they "
-                f"differ is {most:.2g} % ({where}).")
-    return (f"The two times are not within {GOAL} % of one another on all {len(rows)} machines: they differ by "
+    near = (f"On all {len(rows)} machines the two times lie within {GOAL} % of one another; the most that they differ "
+            f"is {most:.2g} % ({where})." if most <= GOAL else
+            f"The two times are not within {GOAL} % of one another on all {len(rows)} machines: they differ by "
             f"{most:.2f} % on {where}.")
-
-
-def finding_of_effects(rows):
-    """The effect, other than computing itself, that takes most, and how far the two are apart in it."""
     more = rows[rows["machine"].str.startswith("+")]
     ours, theirs = more["raya, the effect (ms)"], more["SimGrid, the effect (ms)"]
     i = ours.idxmax()
-    return (f"Of the effects next to computing the largest is that {more['machine'][i][2:]} ({more['torus'][i]}, "
+    return [near, f"Of the effects next to computing the largest is that {more['machine'][i][2:]} ({more['torus'][i]}, "
             f"inject {more['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. In no "
-            f"effect are the two more than {(ours - theirs).abs().max():.3f} ms apart.")
+            f"effect are the two more than {(ours - theirs).abs().max():.3f} ms apart."]

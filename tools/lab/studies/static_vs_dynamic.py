@@ -11,8 +11,8 @@ Are static strategies inadequate from 128 PEs on, and static plus dynamic ones n
   grid, row by row from the top) and then takes C at a time of what is left. Both are simulated exactly on the cost
   image.
 - A request costs its PE {request_cycles} budget cycles: one word to the root and two back at 6 Mword/s, each way with
-  the synchronisation that a rotation has, 0.18 ms by the clock. That is what a barrier of all PEs takes, the most that
-  the request of one can; "free requests" shows the least. The SPA never did this. Requests do not wait for each other.
+  a rotation's synchronisation, 0.18 ms by the clock: that of all PEs, the most that the request of one can take; "free
+  requests" shows the least. The SPA never did this. Requests do not wait for each other.
 - Nothing can end sooner than the larger of the mean load and the largest pixel: the lower bound.
 """
 import math
@@ -24,6 +24,7 @@ from raya.lab import Claim, Page, Plot, Series, Table, papers, study, verdict
 from raya.lab.laboratory import SPA
 from raya.lab.mappings import squarest_grid
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, spa_ms
+from raya.lab.voxels import powers
 
 NAME, NEAR, FEWEST, MOST = "static-vs-dynamic", 1.1, 128, 16_384
 ROOT = "cyclic, p = sqrt(P)"
@@ -72,10 +73,8 @@ def outcomes_of(label, image, sizes, overhead):
             start = mappings["grid"] if kind == "hybrid" else {"mapping": "column"}
             run = raya.schedule(image, plan, pes=pes, **start)
             add(name, kind, pays, run["makespan"], run["requests"])
-    rows = pd.DataFrame(rows)
-    order = rows["strategy"].unique()
-    return rows.sort_values("strategy", key=lambda s: s.map({n: i for i, n in enumerate(order)}), kind="stable",
-                            ignore_index=True)
+    return pd.DataFrame(rows).sort_values("strategy", key=lambda names: pd.factorize(names)[0], kind="stable",
+                                          ignore_index=True)
 
 
 def best_of(rows, kind):
@@ -99,7 +98,7 @@ def static_vs_dynamic(lab, scenes):
     size = lab.size(512)
     own = [raya.example("centre"), raya.generate.random(200, 200).renamed("random-200"),
            raya.generate.balls(3).renamed("balls-3")]
-    sizes = [p for p in (2**k for k in range(7, 15)) if FEWEST <= p <= min(MOST, size * size)]
+    sizes = [p for p in powers(min(MOST, size * size)) if p >= FEWEST]
     images = {scene.name: lab.costs(scene, size).trace for scene in scenes or own}
     by_factor = {f: [outcomes_of(name, image, sizes, request_cycles(f)) for name, image in images.items()]
                  for f in (FACTORS[0], FACTOR, FACTORS[-1])}
@@ -176,23 +175,20 @@ def static_finding(rows):
     best = best_of(rows, "static")
     first, last = best.iloc[0], best.iloc[-1]
 
-    def limits(some):
+    def limits(name):
+        some = rows[rows["strategy"] == name]
         return f"{from_text(first_below(some, 0.9))} and {from_text(first_below(some, 0.5))}"
-
-    def of(name):
-        return rows[rows["strategy"] == name]
 
     return (f"{rows['scene'][0]}, static: at P = {first['P']} {first['strategy']} is best, "
             f"{100 * first['efficiency']:.0f} % efficient, at P = {last['P']} {last['strategy']}, "
             f"{100 * last['efficiency']:.0f} % (of {100 * last['bound']:.0f} % possible). The best of them falls under "
             f"90 % {from_text(first_below(best, 0.9))} and under 50 % {from_text(first_below(best, 0.5))}; the column "
-            f"split {limits(of('column split'))}, cyclic with p = sqrt(P) {limits(of(ROOT))}.")
+            f"split {limits('column split')}, cyclic with p = sqrt(P) {limits(ROOT)}.")
 
 
 def hybrid_finding(rows):
     paid = best_of(rows, "hybrid")["makespan / lower bound"]
-    some = rows[(rows["kind"] == "hybrid") & ~rows["pays"]]
-    free = some.groupby("P")["makespan / lower bound"].min()
+    free = rows[(rows["kind"] == "hybrid") & ~rows["pays"]]["makespan / lower bound"].groupby(rows["P"]).min()
     near, sizes = int((paid <= NEAR).cummin().sum()), sorted(rows["P"].unique())
     up_to = (f"at P = {sizes[0]}" if near == 0 else "for every P" if near == len(sizes) else
              f"up to P = {sizes[near - 1]}")
@@ -216,11 +212,8 @@ def collapse_finding(rows, size):
     for name in ("cyclic, p = 16", ROOT):
         for pes in sorted(rows["P"].unique()):
             owners = raya.owners(size, size, pes=int(pes), **static_mappings(size, int(pes))[name])
-            columns = np.broadcast_to(np.arange(size), owners.shape)
-            least, most = np.full(pes, size), np.full(pes, -1)
-            np.minimum.at(least, owners, columns)
-            np.maximum.at(most, owners, columns)
-            if (least >= most).all():
+            pairs = owners.astype(np.int64) * size + np.arange(size)  # PE and column
+            if len(np.unique(pairs)) == len(np.unique(owners)):
                 texts.append(f"{name} at P = {pes}")
     if not texts:
         return ""

@@ -7,11 +7,9 @@ Does the balance of one picture hold while the camera turns, and does the offset
 - u = (max load - mean load) / mean load of every offset, from one cost image of each frame. No clock is needed.
 - Offsets are chosen twice, by frame 1 alone and by the mean of the odd frames, and judged in the even frames, next to
   p = sqrt(P) and each frame's own best offset, which no choice ahead can reach.
-- Frames of one turn resemble each other, so intervals (95 %) are over turns that start from random views of the same
-  scene: the camera at the same distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above what it
-  looks at.
-- That p = n balances better than p = 0 is reproduced where it does so in every frame of every turn, and not reproduced
-  where it does not in one.
+- Frames of one turn resemble each other, so intervals are over turns that start from random views of the scene: the
+  camera at the same distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above what it looks at.
+- That p = n balances better than p = 0 is reproduced where it does so in every frame of every turn.
 """
 import numpy as np
 import pandas as pd
@@ -44,8 +42,7 @@ def turn(lab, scenes):
     root = round(size**0.5) % size
     settings, findings, claims, tables, plots = [], [], [], [], []
     for number, scene in enumerate(scenes or [raya.example("centre"), raya.example("spheres")], 1):
-        tests = 2**28 // (size * size * FRAMES * max(scene.objects, 1))
-        starts = min(max(tests, 2), MOST_STARTS)
+        starts = min(max(2**28 // (size * size * FRAMES * max(scene.objects, 1)), 2), MOST_STARTS)
         own = turn_of(lab, scene, size)
         others = [turn_of(lab, scene.random_view(seed), size) for seed in range(1, starts + 1)]
         rows = pd.DataFrame([{"start": f"view {i}", **choices_of(u, root)} for i, u in enumerate(others, 1)])
@@ -53,7 +50,7 @@ def turn(lab, scenes):
         frames = FRAMES * (1 + starts)
         settings.append({"scene": scene.name, "size": size, "pes": size, "format": format_for(scene), "fold": "cyclic",
                          "start_seeds": f"1..{starts}"})
-        findings += [finding_of_turn(scene.name, own, root), finding_of_choice(scene.name, rows, root)]
+        findings += findings_of(scene.name, own, rows, root)
         claims.append(Claim(papers.SPA, "Fig. 8", "The cyclic mapping with p = n balances better than p = 0.",
                             verdict(better == frames, better < frames),
                             f"{scene.name}: u at p = n is less than at p = 0 in {better} of {frames} frames."))
@@ -65,19 +62,16 @@ def turn(lab, scenes):
                       "frame to frame, and figures show how far an offset that was fitted to the first frame carries."])
 
 
-def finding_of_turn(scene, u, root):
-    return (f"{scene}: over the {FRAMES} frames of its turn u at p = {root} is {u[:, root].mean():.3f} in the mean and "
-            f"{range_text(u[:, root])} in single frames, {u[0, root]:.3f} in the first; at p = 0 it is "
-            f"{u[:, 0].mean():.3f}, {range_text(u[:, 0])}.")
-
-
-def finding_of_choice(scene, rows, root):
+def findings_of(scene, u, rows, root):
     half, first, at_root = rows["u of that"], rows["its u"], rows[f"u, p = {root}"]
-    return (f"{scene}, {len(rows)} turns from random views, in the frames by which nothing was chosen: u is "
+    return [f"{scene}: over the {FRAMES} frames of its turn u at p = {root} is {u[:, root].mean():.3f} in the mean and "
+            f"{range_text(u[:, root])} in single frames, {u[0, root]:.3f} in the first; at p = 0 it is "
+            f"{u[:, 0].mean():.3f}, {range_text(u[:, 0])}.",
+            f"{scene}, {len(rows)} turns from random views, in the frames by which nothing was chosen: u is "
             f"{estimate(half).text()} by the offset of the odd frames, {estimate(first).text()} by that of frame 1 (a "
             f"difference of {estimate(first - half).text()}) and {estimate(at_root).text()} at p = {root} "
             f"({estimate(at_root - half).text()}); with an offset of its own for every frame it would be "
-            f"{estimate(rows[rows.columns[-1]]).text()}.")
+            f"{estimate(rows[rows.columns[-1]]).text()}."]
 
 
 def columns_of(u, root):
