@@ -40,6 +40,12 @@ foreach(package IN ITEMS opencl-clhpp-headers libcli11-dev nlohmann-json3-dev li
     file(RENAME ${doc}/licences-${package} ${doc}/licences/${package})
 endforeach()
 
+# `raya study` and the Python module need Python, all else does not.
+if(IS_DIRECTORY ${staged}/usr/lib/python3)
+    file(WRITE ${staged}/usr/share/lintian/overrides/raya
+         "# python3 is suggested, not needed: raya renders without it.\nraya: python-package-missing-depends-on-python\n")
+endif()
+
 # Debian's own list of changes, of the release's date.
 file(STRINGS ${doc}/CHANGELOG.md headings REGEX "^## ${CPACK_PACKAGE_VERSION}, ")
 string(REGEX REPLACE "^## [^,]*, ([0-9-]+).*" "\\1" released "${headings}")

@@ -35,7 +35,7 @@ install(FILES ${completion_folder}/raya.fish DESTINATION ${CMAKE_INSTALL_DATADIR
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES_MATCHING PATTERN "*.nff" PATTERN "README.md")
 # Documents lie to each other as they do here, so that their links hold.
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${doc})
-install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|yml|json)$")
+install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|yml|json|ipynb|py)$")
 install(FILES scenes/README.md DESTINATION ${doc}/scenes)
 install(FILES kernels/README.md DESTINATION ${doc}/kernels)
 install(FILES kernels/number/README.md DESTINATION ${doc}/kernels/number)

@@ -97,7 +97,7 @@ std::string Rays::text(std::size_t ray) const {
 
 std::string Hits::text(std::size_t ray) const {
     const std::string t = fmt::format("t 0x{:08x} = {:.9g}", distances[ray], std::bit_cast<float>(distances[ray]));
-    return objects[ray] == kNothing ? "nothing, " + t : fmt::format("object {}, {}", objects[ray], t);
+    return objects[ray] == kNoObject ? "nothing, " + t : fmt::format("object {}, {}", objects[ray], t);
 }
 
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job,
@@ -139,7 +139,7 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
     for (const KnownHit& hit : known.hits) {
         rays.add(hit.origin, hit.direction, hit.limit);
         expected.objects.push_back(hit.object);
-        expected.distances.push_back(std::bit_cast<std::uint32_t>(hit.object == kNothing ? hit.limit : hit.t));
+        expected.distances.push_back(std::bit_cast<std::uint32_t>(hit.object == kNoObject ? hit.limit : hit.t));
     }
     rays.pad();
     Verdict verdict;
@@ -170,7 +170,7 @@ Verdict check_walk(HitRunner& runner, const std::vector<std::string>& scenes, st
         const auto what = [&](std::size_t i) { return fmt::format("ray {} through {}, by the grid", i, file); };
         const Verdict verdict = compare_hits(all, walked, rays, rays_each, what, "");
         if (verdict.outcome != Outcome::kPass) return verdict;
-        for (const std::uint32_t object : all.objects) struck += object != kNothing;
+        for (const std::uint32_t object : all.objects) struck += object != kNoObject;
     }
     const std::size_t all = scenes.size() * rays_each;
     if (struck < rays_each) return failed(fmt::format("only {} of {} rays hit anything", struck, all), {});

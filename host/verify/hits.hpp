@@ -17,13 +17,13 @@
 
 namespace raya {
 
-inline constexpr std::uint32_t kNothing = 0xffffffffu;  // RAYA_NO_OBJECT of the kernels
-inline constexpr float kUsualLimit = 4096;              // of rays: beyond all of the scenes
+inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // RAYA_NO_OBJECT of the kernels
+inline constexpr float kUsualLimit = 4096;               // of rays: beyond all of the scenes
 
 struct KnownHit {
     const char* what;
     std::array<float, 3> origin, direction;
-    std::uint32_t object;  // number in the job, kNothing
+    std::uint32_t object;  // number in the job, kNoObject
     float t;               // where the ray hits; of a miss without a meaning
     float limit = kUsualLimit;
 };
@@ -52,7 +52,7 @@ struct Rays {
 
 /// What they hit.
 struct Hits {
-    std::vector<std::uint32_t> objects, distances;  // [ray]: number or kNothing; bits, the limit of a miss
+    std::vector<std::uint32_t> objects, distances;  // [ray]: number or kNoObject; bits, the limit of a miss
 
     std::string text(std::size_t ray) const;
 };

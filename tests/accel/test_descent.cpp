@@ -77,10 +77,10 @@ Tally compare(const Variant& variant, unsigned cases) {
         const Hits tree = find_hits(runner, "hits_by_search", job.words(), rays);
         const Hits stops = find_hits(runner, "stops_by_search", job.words(), rays);
         for (std::size_t i = 0; i < rays.count(); ++i) {
-            const bool hit = all.objects[i] != kNothing;
+            const bool hit = all.objects[i] != kNoObject;
             tally.hits += hit;
             tally.wrong += tree.objects[i] != all.objects[i] || tree.distances[i] != all.distances[i] ||
-                           (stops.objects[i] != kNothing) != hit;
+                           (stops.objects[i] != kNoObject) != hit;
         }
         tally.rays += rays.count();
     }

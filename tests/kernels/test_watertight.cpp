@@ -74,7 +74,7 @@ std::size_t misses(const Variant& variant, unsigned count) {
     const PackedJob job = pack_job(scene, settings);
     KernelRunner runner("kernels/checks/hits.cl", variant);
     const Hits hits = find_hits(runner, "hits_of_all", job.words(), rays_at_edges(scene, variant.format, count));
-    return static_cast<std::size_t>(std::count(hits.objects.begin(), hits.objects.end(), kNothing));
+    return static_cast<std::size_t>(std::count(hits.objects.begin(), hits.objects.end(), kNoObject));
 }
 
 }  // namespace
