@@ -47,7 +47,6 @@ inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, flo
     return words;
 }
 
-inline constexpr std::uint32_t kNoObject = kNoObject;
 
 struct ProbedHits {
     std::vector<std::uint32_t> objects;  // numbers in the job
