@@ -47,7 +47,6 @@ inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, flo
     return words;
 }
 
-
 struct ProbedHits {
     std::vector<std::uint32_t> objects;  // numbers in the job
     std::vector<float> distances;
