@@ -178,7 +178,10 @@ def damaged(page, name, html, folder, count):
     for i in range(count):
         report = report_of(text)
         holder, key = rng.choice([place for place in places(report, lambda value: True) if rng.random() < 0.2 or place[1] != 0] or [(report, "kind")])
-        if rng.random() < 0.4 and isinstance(holder, dict):
+        if i == 0:  # the others may all hit a number in a long list, which shows as another number
+            key = "every part"
+            report |= {part: 7 for part, value in report.items() if isinstance(value, (dict, list))}
+        elif rng.random() < 0.4 and isinstance(holder, dict):
             del holder[key]
         else:
             holder[key] = rng.choice([None, True, -1, 1.5, 1e300, "<b>'\"&", [], {}, [[]], 2 ** 40])
