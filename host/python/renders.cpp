@@ -147,7 +147,7 @@ py::dict root_of(const Result& r) {
         link_ms = std::max(link_ms, t805_link_ms(result.link_words[out], result.link_words[in]));
     }
     py::dict all;
-    all["processor_ms"] = 1e-6 * kT805CycleNs * static_cast<double>(cycles);
+    all["processor_ms"] = t805_ms(cycles);
     all["link_ms"] = link_ms;
     return all;
 }
@@ -155,7 +155,7 @@ py::dict root_of(const Result& r) {
 double work_ms(const Result& r) {
     std::uint64_t sum = 0;
     for (const std::uint64_t load : torus_of(*r, "work_ms").load.per_pe) sum += load;
-    return 1e-6 * kT805CycleNs * static_cast<double>(sum);
+    return t805_ms(sum);
 }
 
 py::dict node_memory(const Result& r) {
