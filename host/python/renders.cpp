@@ -121,7 +121,7 @@ py::dict events_of(const Result& r) {
     return all;
 }
 
-double t805_ms(const std::map<std::string, std::uint64_t>& events) {
+double events_ms(const std::map<std::string, std::uint64_t>& events) {
     const auto cycles = t805_cycles();
     std::uint64_t sum = 0;
     for (const auto& [name, count] : events) {
@@ -227,7 +227,7 @@ py::object report_of(const py::object& self) {
     return python_of(to_json(r->report));
 }
 
-std::string text_of(const Result& r) {
+std::string line_of(const Result& r) {
     return fmt::format("<raya.Result of {} on {}: {}x{}, {}, imbalance {:.4f}>", r->report.scene,
                        r->report.machine.name, r->image().width, r->image().height, r->report.image.hash.substr(0, 8),
                        load_of(*r).imbalance);
@@ -310,7 +310,7 @@ void add_result(py::module_& module) {
              "one_way, both_ways (bytes/s, 0: no time) or buffer (messages); with async_=True.")
         .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
              "Writes that machine and the history for SimGrid (docs/packets.md); returns the number of messages.")
-        .def("__repr__", text_of);
+        .def("__repr__", line_of);
 }
 
 void warn_of(const Render& r) {
@@ -353,7 +353,7 @@ void add_renders(py::module_& module) {
             "device", [](const PythonSession& s) { return info_of(s.info()); },
             "dict: name, platform, version, driver, as OpenCL names them.")
         .def("render", render_in, py::arg("scene"), py::arg("progress") = py::none(), "raya.render() on this device.");
-    module.def("t805_ms", t805_ms, py::arg("events"),
+    module.def("t805_ms", events_ms, py::arg("events"),
                "Modelled ms that one T805 computes for so many events, by name.");
     module.def("render", render_shared, py::arg("scene"), py::arg("progress") = py::none());
 }
