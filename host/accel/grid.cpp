@@ -17,11 +17,8 @@ namespace {
 constexpr double kVoxelsPerObject = 4;
 
 constexpr double kLeastReach = 2;       // of rays, in extents of the scene: sizes of objects hardly depend on it
-constexpr double kLargeShare = 0.75;    // of the whole box's longest side
+constexpr double kLargeSide = 0.75;     // of the whole box's longest side
 constexpr std::size_t kMostLarge = 16;  // more of them are no exception: they belong into the lists
-
-// The largest job that 32-bit word numbers reach with room to spare: 4 GB.
-constexpr std::size_t kMostWords = std::size_t{1} << 30;
 
 double longest_side(const Box& box) {
     const Vec3 sides = box.max - box.min;
@@ -31,8 +28,6 @@ double longest_side(const Box& box) {
 std::uint32_t word_number(std::size_t at) { return static_cast<std::uint32_t>(at); }
 
 // The next word at which a row of four may start: aligned rows need fewer memory accesses.
-std::size_t in_rows(std::size_t at) { return (at + 3) / 4 * 4; }
-
 // The sections of a grid's words behind its header.
 struct GridLists {
     std::vector<std::uint32_t> voxels, rows, numbers;
@@ -101,7 +96,7 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
         }
         std::vector<std::uint32_t> found;
         for (std::size_t i = 0; i < regions.size(); ++i)
-            if (lengths[i] > kLargeShare * longest_side(whole)) found.push_back(regions.number(i));
+            if (lengths[i] > kLargeSide * longest_side(whole)) found.push_back(regions.number(i));
         if (found.empty() || large.size() + found.size() > kMostLarge) return large;
         large.insert(large.end(), found.begin(), found.end());
         std::sort(large.begin(), large.end());
@@ -119,7 +114,7 @@ Partition accel_partition(const PackedJob& job, const NumberFormat& format, cons
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
     const GridLists lists = grid_lists(job.words(), job.header().objects, p);
-    const std::size_t end = job.words().size(), at = in_rows(end);
+    const std::size_t end = job.words().size(), at = whole_rows(end);
     raya_grid_words header{};
     std::size_t next = at + kWordsOf<raya_grid_words>;
     const auto place = [&](std::size_t count) { return word_number(std::exchange(next, next + count)); };
@@ -127,7 +122,7 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
     header.apart = word_number(p.apart.size());
     header.apart_at = place(p.apart.size());
     header.voxels_at = place(lists.voxels.size());
-    next = in_rows(next);
+    next = whole_rows(next);
     header.rows_at = place(lists.rows.size());
     header.numbers_at = place(lists.numbers.size());
     if (next > kMostWords || lists.numbers.size() > RAYA_ROW_NUMBER)

@@ -9,7 +9,6 @@ namespace {
 
 constexpr std::size_t kBins = 32;        // along each axis
 constexpr std::uint32_t kEvenFrom = 24;  // depth from which on halves are taken, so that no tree is much deeper
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Twice the middle.
 float middle(const TreeItem& item, std::size_t axis) { return item.box.low[axis] + item.box.high[axis]; }

@@ -13,14 +13,13 @@
 
 namespace raya {
 
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 /// A box in fp32.
 struct Bounds {
     std::array<float, 3> low, high;
 };
-constexpr Bounds kNowhere = {{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
-                              std::numeric_limits<float>::infinity()},
-                             {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-                              -std::numeric_limits<float>::infinity()}};
+constexpr Bounds kNowhere = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
 void extend(Bounds& box, const Bounds& by);
 /// Half the surface; 0 of nowhere.

@@ -14,7 +14,6 @@
 namespace raya {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kWidth = RAYA_BVH_WIDTH;
 
 // How far from a side of its box a ray can be by the walk's rounding. t of a side is side / D - O / D in two
@@ -224,12 +223,12 @@ struct TreeItems {
 // Objects so large that nearly every ray comes to them (the ground under a scene, walls around it): a leaf costs a ray
 // more than a test that V rays make at once. None where there are too many.
 constexpr std::size_t kMostApart = 8;
-constexpr float kLargeShare = 1.0F / 8;  // of the surface of what is around all
+constexpr float kLargeArea = 1.0F / 8;  // of the surface of what is around all
 
 void hold_large_apart(TreeItems& all) {
     Bounds whole = kNowhere;
     for (const TreeItem& item : all.items) extend(whole, item.box);
-    const auto is_large = [&](const TreeItem& item) { return area(item.box) > kLargeShare * area(whole); };
+    const auto is_large = [&](const TreeItem& item) { return area(item.box) > kLargeArea * area(whole); };
     const auto large = static_cast<std::size_t>(std::count_if(all.items.begin(), all.items.end(), is_large));
     if (large > kMostApart) return;
     for (const TreeItem& item : all.items)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/clock.hpp"
 #include "host/base/say.hpp"
 
 namespace raya {
@@ -66,7 +67,7 @@ void ProgressBar::update(double done) {
     if (!done_ || share > done_->share) done_ = {share, stage_seconds()};
 }
 
-double ProgressBar::stage_seconds() const { return std::chrono::duration<double>(Clock::now() - stage_began_).count(); }
+double ProgressBar::stage_seconds() const { return seconds_since(stage_began_); }
 
 void ProgressBar::draw_until_ended() {
     using namespace std::chrono_literals;

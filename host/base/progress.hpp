@@ -1,12 +1,13 @@
 // How far a command has come, for a person at a terminal.
 #pragma once
-#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+
+#include "host/base/clock.hpp"
 
 namespace raya {
 
@@ -45,7 +46,6 @@ class ProgressBar {
     void update(double done);
 
   private:
-    using Clock = std::chrono::steady_clock;
     void draw_until_ended();
     double stage_seconds() const;
 

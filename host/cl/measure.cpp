@@ -17,7 +17,7 @@ std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
     return std::size_t{device.compute_units} * (device.type == "cpu" ? 2 * group : 2048);
 }
 
-constexpr int kSamples = 2;                                      // each of three times
+constexpr int kReadings = 2;                                     // each of three times
 constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kRoot = 4;  // of kOperations
 
 // Two buffers, an eighth of the memory at most.
@@ -32,7 +32,7 @@ double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
     session.fill("peak", from, 1);  // memory that nobody has written to may not be there yet
     session.fill("peak", to, 2);
     session.clear_profile();
-    for (int i = 0; i < kSamples; ++i) session.copy("peak", from, 0, to, 0, bytes);
+    for (int i = 0; i < kReadings; ++i) session.copy("peak", from, 0, to, 0, bytes);
     const std::uint64_t least_ns = session.profile().summary().front().min_ns;
     return least_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(least_ns) : 0;
 }
@@ -49,10 +49,10 @@ class Peak {
 
     DevicePeak once() {
         DevicePeak peak;
-        peak.multiply_per_s = of_render_.measure(kMultiplyAdd, kSamples);
-        peak.fp32_per_s = widest_ ? widest_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
-        peak.divide_per_s = of_render_.measure(kDivide, kSamples);
-        peak.root_per_s = of_render_.measure(kRoot, kSamples);
+        peak.multiply_per_s = of_render_.measure(kMultiplyAdd, kReadings);
+        peak.fp32_per_s = widest_ ? widest_->measure(kMultiplyAdd, kReadings) : peak.multiply_per_s;
+        peak.divide_per_s = of_render_.measure(kDivide, kReadings);
+        peak.root_per_s = of_render_.measure(kRoot, kReadings);
         peak.copy_bytes = copied_bytes(session_.device());
         peak.copy_bytes_per_s = copy_bytes_per_s(session_, peak.copy_bytes);
         return peak;

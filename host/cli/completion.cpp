@@ -35,7 +35,7 @@ CommandText with_words_as_commands(const CommandText& program) {
 }
 
 // What _raya_offer is told of a value.
-std::string offer_of(const OptionText& option) {
+std::string bash_offer_of(const OptionText& option) {
     const ValueText value = value_of(option);
     switch (value.kind) {
         case ValueText::Kind::kWords:
@@ -53,31 +53,32 @@ std::string offer_of(const OptionText& option) {
 }
 
 // What a command takes: names of commands and options, what a word alone may be, and of each option with a value that.
-std::string body_of(const CommandText& command) {
+std::string bash_body_of(const CommandText& command) {
     std::vector<std::string> commands, options;
     std::string values;
     for (const CommandText& one : command.commands) commands.push_back(one.name);
     for (const OptionText& option : command.options) {
         options.insert(options.end(), option.names.begin(), option.names.end());
         if (!option.is_flag())
-            values +=
-                fmt::format("        {}) value={} ;;\n", fmt::join(option.names, "|"), shell_quoted(offer_of(option)));
+            values += fmt::format("        {}) value={} ;;\n", fmt::join(option.names, "|"),
+                                  shell_quoted(bash_offer_of(option)));
     }
-    std::string text = fmt::format("        commands='{}'\n        options='{}'\n        word={}\n",
-                                   fmt::join(commands, " "), fmt::join(options, " "),
-                                   shell_quoted(command.words.empty() ? "nothing" : offer_of(command.words.front())));
+    std::string text =
+        fmt::format("        commands='{}'\n        options='{}'\n        word={}\n", fmt::join(commands, " "),
+                    fmt::join(options, " "),
+                    shell_quoted(command.words.empty() ? "nothing" : bash_offer_of(command.words.front())));
     if (!values.empty()) text += "        case $1 in\n" + values + "        esac\n";
     return text;
 }
 
-constexpr const char* kBeginning = R"(# raya's commands, options and values in bash. Made by: raya completion bash
+constexpr const char* kBashBeginning = R"(# raya's commands, options and values in bash. Made by: raya completion bash
 # Sets what the command $node takes: commands, options, word (what may stand alone), and value: what follows its option $1.
 _raya_takes() {
     commands='' options='' word=nothing value=''
     case $node in
 )";
 
-constexpr const char* kEnd = R"(    esac
+constexpr const char* kBashEnd = R"(    esac
 }
 
 # COMPREPLY: what begins with $1 of that which $2... tells: words, words with commas between, files with an end, folders.
@@ -158,9 +159,9 @@ std::string shell_cases(const std::vector<std::pair<std::string, std::string>>& 
 std::string bash_completion(const CommandText& program) {
     std::vector<std::pair<std::string, std::string>> bodies;
     for_each_command(program, [&](const CommandText& command, const std::string& path) {
-        bodies.emplace_back(path, body_of(command));
+        bodies.emplace_back(path, bash_body_of(command));
     });
-    return kBeginning + shell_cases(bodies) + kEnd;
+    return kBashBeginning + shell_cases(bodies) + kBashEnd;
 }
 
 }  // namespace raya

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <optional>
 
+#include "host/base/clock.hpp"
 #include "host/base/encoding.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"

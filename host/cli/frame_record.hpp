@@ -1,7 +1,6 @@
 // What is kept of a sequence's frames beside them, so that a sequence that was stopped goes on, and one that was
 // changed keeps no stale frame.
 #pragma once
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/clock.hpp"
 #include "host/base/json.hpp"
 
 namespace raya {
@@ -40,7 +40,6 @@ class FrameRecord {
     void write();
 
   private:
-    using Clock = std::chrono::steady_clock;
     void read();
     std::string name_of(const std::string& file) const;
 

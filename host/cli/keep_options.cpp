@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "host/base/clock.hpp"
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
@@ -75,7 +76,7 @@ StateFile::StateFile(const KeepOptions& options) : options_(options) {
 }
 
 bool StateFile::due() const {
-    const double since = std::chrono::duration<double>(Clock::now() - kept_).count();
+    const double since = seconds_since(kept_);
     return since >= std::max(options_.every_s, options_.every_s > 0 ? keeping_s_ / kShareOfKeeping : 0.0);
 }
 

@@ -1,8 +1,8 @@
 // A long image that may be stopped and go on: --keep, --resume, --keep-every.
 #pragma once
-#include <chrono>
 #include <string>
 
+#include "host/base/clock.hpp"
 #include "host/ring/ring_state.hpp"
 
 namespace CLI {
@@ -36,8 +36,6 @@ class StateFile {
     void remove() const;
 
   private:
-    using Clock = std::chrono::steady_clock;
-
     bool due() const;
     void keep(const RingState& state, const StateSettings& settings);
     std::optional<RingState> read(const StateSettings& settings, const RingState& like) const;

@@ -155,11 +155,11 @@ LinkMove parse_link_move(const std::string& text) {
 }
 
 PacketCharge parse_charge(const TorusOptions& t) {
-    constexpr std::uint32_t kMostWords = 4096;
+    constexpr std::uint32_t kMostChargeWords = 4096;
     const PacketCharge charge{t.packet_words.value_or(RAYA_PACKET_WORDS), is_return_a_ray(t.returns)};
-    if (charge.ray_words < RAYA_PACKET_WORDS || charge.ray_words > kMostWords)
+    if (charge.ray_words < RAYA_PACKET_WORDS || charge.ray_words > kMostChargeWords)
         throw UserError(fmt::format("--packet-words {}: must be {}..{}", charge.ray_words,
-                                    std::uint32_t{RAYA_PACKET_WORDS}, kMostWords));
+                                    std::uint32_t{RAYA_PACKET_WORDS}, kMostChargeWords));
     return charge;
 }
 

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "host/base/clock.hpp"
 #include "host/base/say.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/utc_time.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/cli/command_tree.hpp"

@@ -8,7 +8,7 @@ namespace raya {
 namespace {
 
 // Text in which _arguments takes no letter for its own.
-std::string plain(const std::string& text) {
+std::string zsh_plain(const std::string& text) {
     std::string escaped;
     for (const char c : text) {
         if (c == '[' || c == ']' || c == ':' || c == '\\') escaped += '\\';
@@ -18,14 +18,14 @@ std::string plain(const std::string& text) {
 }
 
 // ":NAME:(a b)", what follows an option or stands alone.
-std::string offer_of(const OptionText& option) {
+std::string zsh_offer_of(const OptionText& option) {
     const ValueText value = value_of(option);
-    const std::string name = ':' + plain(option.value) + ':';
+    const std::string name = ':' + zsh_plain(option.value) + ':';
     switch (value.kind) {
         case ValueText::Kind::kWords:
             return fmt::format("{}({})", name, fmt::join(value.words, " "));
         case ValueText::Kind::kList:
-            return fmt::format("{}_values -s , {} {}", name, shell_quoted(plain(option.value)),
+            return fmt::format("{}_values -s , {} {}", name, shell_quoted(zsh_plain(option.value)),
                                fmt::join(value.words, " "));
         case ValueText::Kind::kFile:
             return fmt::format("{}_files -g \"*{}(-.)\"", name, value.extension);
@@ -43,27 +43,27 @@ std::string arguments_of(const OptionText& option) {
     for (const std::string& name : option.names) {
         const std::string others = option.repeated ? "*" : fmt::format("({})", fmt::join(option.names, " "));
         const std::string follows = option.is_flag() ? "" : name.starts_with("--") ? "=" : "+";
-        const std::string spec = others + name + follows + '[' + plain(brief(option.help)) + ']';
-        text += " \\\n            " + shell_quoted(option.is_flag() ? spec : spec + offer_of(option));
+        const std::string spec = others + name + follows + '[' + zsh_plain(brief(option.help)) + ']';
+        text += " \\\n            " + shell_quoted(option.is_flag() ? spec : spec + zsh_offer_of(option));
     }
     return text;
 }
 
-std::string body_of(const CommandText& command) {
+std::string zsh_body_of(const CommandText& command) {
     std::string text = "        _arguments -S";
     for (const OptionText& option : command.options) text += arguments_of(option);
     for (const OptionText& word : command.words)
-        text += " \\\n            " + shell_quoted((word.repeated ? "*" : "") + offer_of(word));
+        text += " \\\n            " + shell_quoted((word.repeated ? "*" : "") + zsh_offer_of(word));
     if (command.commands.empty()) return text + '\n';
     text = "        local -a commands=(";
     for (const CommandText& one : command.commands)
-        text += "\n            " + shell_quoted(plain(one.name) + ':' + brief(one.summary));
+        text += "\n            " + shell_quoted(zsh_plain(one.name) + ':' + brief(one.summary));
     text += ")\n        if [[ $PREFIX == -* ]]; then\n    _arguments -S";
     for (const OptionText& option : command.options) text += arguments_of(option);
     return text + "\n        else\n            _describe command commands\n        fi\n";
 }
 
-constexpr const char* kBeginning = R"zsh(#compdef raya
+constexpr const char* kZshBeginning = R"zsh(#compdef raya
 # raya's commands, options and values in zsh. Made by: raya completion zsh
 
 _raya() {
@@ -78,7 +78,7 @@ _raya() {
     case $node in
 )zsh";
 
-constexpr const char* kEnd = R"zsh(    esac
+constexpr const char* kZshEnd = R"zsh(    esac
 }
 
 )zsh";
@@ -89,12 +89,12 @@ std::string zsh_completion(const CommandText& program) {
     std::vector<std::pair<std::string, std::string>> bodies;
     std::string nodes;
     for_each_command(program, [&](const CommandText& command, const std::string& path) {
-        bodies.emplace_back(path, body_of(command));
+        bodies.emplace_back(path, zsh_body_of(command));
         std::string node = path;
         for (char& c : node) c = c == ' ' ? '_' : c;
         nodes += (nodes.empty() ? "" : " ") + node;
     });
-    return kBeginning + shell_cases(bodies) + kEnd + "typeset -g _raya_nodes=" + shell_quoted(nodes) +
+    return kZshBeginning + shell_cases(bodies) + kZshEnd + "typeset -g _raya_nodes=" + shell_quoted(nodes) +
            "\nif [[ $funcstack[1] == _raya ]]; then _raya \"$@\"; else compdef _raya raya; fi\n";
 }
 

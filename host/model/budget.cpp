@@ -142,12 +142,12 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
             "as one that meets it"},
 }};
 
-constexpr bool in_order() {
+constexpr bool budgets_in_order() {
     for (std::size_t i = 0; i < kBudgets.size(); ++i)
         if (kBudgets[i].event != static_cast<int>(i)) return false;
     return true;
 }
-static_assert(in_order());
+static_assert(budgets_in_order());
 
 }  // namespace
 

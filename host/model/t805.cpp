@@ -58,12 +58,12 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
     {.event = RAYA_DISCARDED, .additions = 8 + 25, .multiplications = 12 + 18},
 }};
 
-constexpr bool in_order() {
+constexpr bool work_in_order() {
     for (std::size_t i = 0; i < kWork.size(); ++i)
         if (kWork[i].event != static_cast<int>(i)) return false;
     return true;
 }
-static_assert(in_order());
+static_assert(work_in_order());
 
 std::uint32_t cycles_of(const T805Work& work, const Budget& budget, const PacketCharge& packets) {
     const std::uint32_t operations =

@@ -121,7 +121,7 @@ py::dict events_of(const Result& r) {
     return all;
 }
 
-double t805_ms(const std::map<std::string, std::uint64_t>& events) {
+double events_ms(const std::map<std::string, std::uint64_t>& events) {
     const auto cycles = t805_cycles();
     std::uint64_t sum = 0;
     for (const auto& [name, count] : events) {
@@ -147,7 +147,7 @@ py::dict root_of(const Result& r) {
         link_ms = std::max(link_ms, t805_link_ms(result.link_words[out], result.link_words[in]));
     }
     py::dict all;
-    all["processor_ms"] = 1e-6 * kT805CycleNs * static_cast<double>(cycles);
+    all["processor_ms"] = t805_ms(cycles);
     all["link_ms"] = link_ms;
     return all;
 }
@@ -155,7 +155,7 @@ py::dict root_of(const Result& r) {
 double work_ms(const Result& r) {
     std::uint64_t sum = 0;
     for (const std::uint64_t load : torus_of(*r, "work_ms").load.per_pe) sum += load;
-    return 1e-6 * kT805CycleNs * static_cast<double>(sum);
+    return t805_ms(sum);
 }
 
 py::dict node_memory(const Result& r) {
@@ -227,7 +227,7 @@ py::object report_of(const py::object& self) {
     return python_of(to_json(r->report));
 }
 
-std::string text_of(const Result& r) {
+std::string line_of(const Result& r) {
     return fmt::format("<raya.Result of {} on {}: {}x{}, {}, imbalance {:.4f}>", r->report.scene,
                        r->report.machine.name, r->image().width, r->image().height, r->report.image.hash.substr(0, 8),
                        load_of(*r).imbalance);
@@ -310,7 +310,7 @@ void add_result(py::module_& module) {
              "one_way, both_ways (bytes/s, 0: no time) or buffer (messages); with async_=True.")
         .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
              "Writes that machine and the history for SimGrid (docs/packets.md); returns the number of messages.")
-        .def("__repr__", text_of);
+        .def("__repr__", line_of);
 }
 
 void warn_of(const Render& r) {
@@ -353,7 +353,7 @@ void add_renders(py::module_& module) {
             "device", [](const PythonSession& s) { return info_of(s.info()); },
             "dict: name, platform, version, driver, as OpenCL names them.")
         .def("render", render_in, py::arg("scene"), py::arg("progress") = py::none(), "raya.render() on this device.");
-    module.def("t805_ms", t805_ms, py::arg("events"),
+    module.def("t805_ms", events_ms, py::arg("events"),
                "Modelled ms that one T805 computes for so many events, by name.");
     module.def("render", render_shared, py::arg("scene"), py::arg("progress") = py::none());
 }

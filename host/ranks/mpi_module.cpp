@@ -17,19 +17,16 @@
 #include <thread>
 #include <vector>
 
+#include "host/base/clock.hpp"
 #include "host/error.hpp"
 #include "host/ranks/transport.hpp"
 
 namespace raya {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Counts of MPI are ints.
 constexpr std::size_t kPiece = std::size_t{1} << 30;
 constexpr int kFailureTag = 1;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void check(int result, const char* call) {
     if (result == MPI_SUCCESS) return;

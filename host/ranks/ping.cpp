@@ -3,19 +3,18 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <limits>
+
+#include "host/base/clock.hpp"
 
 namespace raya {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr std::uint64_t kMostBytes = 4 << 20;
+constexpr std::uint64_t kLongestPing = 4 << 20;
 
 // Of nothing no message is sent, so the shortest has a byte.
-constexpr std::uint64_t kMessages[] = {1, 64, 1 << 10, 4 << 10, 16 << 10, 64 << 10, 256 << 10, 1 << 20, kMostBytes};
+constexpr std::uint64_t kMessages[] = {1, 64, 1 << 10, 4 << 10, 16 << 10, 64 << 10, 256 << 10, 1 << 20, kLongestPing};
 constexpr std::uint64_t kGathers[] = {136, 1088, 8704, 69632};  // status of 1, 8, 64 and 512 nodes
 
 // Many of what is short, since little disturbs it; 1 GB in all at most.
@@ -27,7 +26,7 @@ double least_seconds(int turns, Call&& call) {
     for (int i = 0; i < turns; ++i) {
         const Clock::time_point start = Clock::now();
         call();
-        least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
+        least = std::min(least, seconds_since(start));
     }
     return least;
 }

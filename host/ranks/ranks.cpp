@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 
+#include "host/base/clock.hpp"
 #include "host/base/interruption.hpp"
 #include "host/base/say.hpp"
 
@@ -108,7 +109,7 @@ template <class Call>
 void Ranks::timed(Call&& call) {
     const Clock::time_point start = Clock::now();
     call();
-    traffic_.waiting_s += std::chrono::duration<double>(Clock::now() - start).count();
+    traffic_.waiting_s += seconds_since(start);
 }
 
 void Ranks::broadcast_bytes(std::span<std::byte> bytes) {

@@ -1,6 +1,5 @@
 // The ranks that share a render: processes, each with a device of its own. A program that runs alone is the only one.
 #pragma once
-#include <chrono>
 #include <concepts>
 #include <cstdint>
 #include <functional>
@@ -141,7 +140,6 @@ class Ranks {
   private:
     int end_all(const std::string& whole, int code);
     static constexpr int kPlainTag = 0, kHostTag = 1;
-    using Clock = std::chrono::steady_clock;
 
     void broadcast_bytes(std::span<std::byte> bytes);
     void gather_bytes(std::span<const std::byte> own, std::span<std::byte> all, std::span<const std::size_t> sizes);

@@ -11,19 +11,19 @@
 namespace raya {
 namespace {
 
-double number(std::uint64_t count) { return static_cast<double>(count); }
+double as_double(std::uint64_t count) { return static_cast<double>(count); }
 
 double of_time(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
 
 // Seconds of the operations at the format's own rates.
 double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
-    return number(w.operations) / peak.multiply_per_s + number(w.divisions) / peak.divide_per_s +
-           number(w.roots) / peak.root_per_s;
+    return as_double(w.operations) / peak.multiply_per_s + as_double(w.divisions) / peak.divide_per_s +
+           as_double(w.roots) / peak.root_per_s;
 }
 
 RooflineRow row_of(const KernelWork& work, double seconds, const DevicePeak& peak) {
     RooflineRow row{.work = work, .seconds = seconds};
-    const double operations = number(work.all_operations()), bytes = number(work.bytes);
+    const double operations = as_double(work.all_operations()), bytes = as_double(work.bytes);
     row.intensity = bytes > 0 ? operations / bytes : 0;
     const double computing = operations / peak.fp32_per_s, moving = bytes / peak.copy_bytes_per_s;
     row.bound = computing >= moving ? Bound::kCompute : Bound::kBandwidth;
@@ -38,13 +38,14 @@ bool is_known(const DevicePeak& p) {
 
 const char* bound_name(Bound bound) { return bound == Bound::kCompute ? "compute" : "bandwidth"; }
 
-std::string percent(double share) { return fmt::format("{:.2f}", 100 * share); }
+std::string hundredths(double share) { return fmt::format("{:.2f}", 100 * share); }
 
 // A cell that says nothing where there is nothing to say.
 std::string cell(double value, const std::string& text) { return value > 0 ? text : "-"; }
 
 std::vector<std::string> cells_of(const RooflineRow& r) {
-    const double operations = number(r.work.all_operations()), rays = number(r.work.rays), bytes = number(r.work.bytes);
+    const double operations = as_double(r.work.all_operations()), rays = as_double(r.work.rays),
+                 bytes = as_double(r.work.bytes);
     return {r.work.label,
             cell(rays, fmt::format("{:.2f}", 1e-6 * of_time(rays, r.seconds))),
             cell(operations, fmt::format("{:.4f}", 1e-9 * operations)),
@@ -53,8 +54,8 @@ std::vector<std::string> cells_of(const RooflineRow& r) {
             cell(bytes, fmt::format("{:.3f}", 1e-9 * of_time(bytes, r.seconds))),
             cell(r.intensity, fmt::format("{:.3g}", r.intensity)),
             bound_name(r.bound),
-            percent(r.share),
-            r.of_format ? percent(*r.of_format) : "-"};
+            hundredths(r.share),
+            r.of_format ? hundredths(*r.of_format) : "-"};
 }
 
 std::string peak_lines(const DevicePeak& p) {
@@ -109,7 +110,7 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
     for (const KernelWork& work : works)
         for (const LabelSummary& c : commands)
             if (c.label == work.label && c.kind == "kernel" && c.total_ns > 0)
-                all.rows.push_back(row_of(work, 1e-9 * number(c.total_ns), peak));
+                all.rows.push_back(row_of(work, 1e-9 * as_double(c.total_ns), peak));
     return all;
 }
 
@@ -137,14 +138,14 @@ Json peak_json(const DevicePeak& p) {
 Json roofline_json(const Roofline& roofline) {
     Json rows = Json::list();
     for (const RooflineRow& r : roofline.rows) {
-        const double operations = number(r.work.all_operations());
+        const double operations = as_double(r.work.all_operations());
         rows.push_back({{"label", r.work.label},
                         {"rays", r.work.rays},
-                        {"rays_per_s", of_time(number(r.work.rays), r.seconds)},
+                        {"rays_per_s", of_time(as_double(r.work.rays), r.seconds)},
                         {"operations", r.work.all_operations()},
                         {"operations_per_s", of_time(operations, r.seconds)},
                         {"bytes", r.work.bytes},
-                        {"bytes_per_s", of_time(number(r.work.bytes), r.seconds)},
+                        {"bytes_per_s", of_time(as_double(r.work.bytes), r.seconds)},
                         {"operations_per_byte", r.intensity},
                         {"bound", bound_name(r.bound)},
                         {"share_of_roof", r.share},

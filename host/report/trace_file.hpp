@@ -5,6 +5,7 @@
 // after another; either end of a flow lies in a slice.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -26,6 +27,8 @@ struct TraceTrack {
     std::uint32_t process = 0, thread = 0;
     auto operator<=>(const TraceTrack&) const = default;
 };
+
+inline std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(std::llround(ms * 1e6)); }
 
 /// All times are nanoseconds from the trace's beginning. std::logic_error for a track that has no name yet, a slice
 /// that ends before it begins or crosses another one. Holds the text in memory: about 150 bytes for each event.

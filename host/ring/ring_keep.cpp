@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/clock.hpp"
 #include "host/base/encoding.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
@@ -13,12 +14,8 @@
 namespace raya {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::uint32_t kFirstBands = 64;    // into which a share is cut at first
 constexpr std::uint32_t kFewestOfLane = 16;  // pixels: fewer leave lanes empty at every band's end
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});

@@ -1,10 +1,10 @@
 #include "host/ring/ring_plan.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include "host/accel/partition.hpp"
 #include "host/accel/tree.hpp"
+#include "host/base/clock.hpp"
 #include "host/cl/tuned.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/scene/packer.hpp"
@@ -37,8 +37,6 @@ double most_work(AccelKind accel, double step, const DeviceInfo& device) {
     return std::max(1.0, (device.loop_turns - kTurnsOfLaunch) / turns - step);
 }
 
-using Clock = std::chrono::steady_clock;
-
 PackedJob packed(const Session& session, const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
     const StepLog::Step step = session.step("pack scene");
     return pack_for_ring(scene, settings, scale);
@@ -51,12 +49,12 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
     const StepLog::Step step = session.step("divide scene");
     const Clock::time_point start = Clock::now();
     all.accel = append_accel(all.job, settings);
-    all.accel_s = std::chrono::duration<double>(Clock::now() - start).count();
+    all.accel_s = seconds_since(start);
     return all;
 }
 
 // All of a job but its words.
-struct Figures {
+struct RingFigures {
     AccelSummary accel;
     double accel_s = 0;
     LengthScale scale;
@@ -143,7 +141,7 @@ AccelSummary append_accel(PackedJob& job, const RingSettings& settings) {
 
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks) {
     if (!ranks.first()) {
-        Figures f;
+        RingFigures f;
         std::vector<std::uint32_t> words;
         ranks.broadcast(f);
         ranks.broadcast(words);
@@ -153,7 +151,7 @@ RingJob make_ring_job(const Session& session, const Scene& scene, const RingSett
     RingJob all = pack_ring_job(session, scene, settings);
     if (!ranks.many()) return all;
     const StepLog::Step step = session.step("send scene");
-    Figures f{all.accel, all.accel_s, all.scale, all.objects, all.job.has_patches()};
+    RingFigures f{all.accel, all.accel_s, all.scale, all.objects, all.job.has_patches()};
     std::vector<std::uint32_t> words = all.job.words();
     ranks.broadcast(f);
     ranks.broadcast(words);

@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "host/base/clock.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_plan.hpp"
@@ -12,10 +12,6 @@
 
 namespace raya {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 PeSegment segment_here(const raya_mapping& m, const Ranks& ranks) {
     if (m.pes < ranks.count())

@@ -1,6 +1,5 @@
 // Renders a scene on a model of a ring machine: the host drives PEs, bus and ring; the kernels are the PEs.
 #pragma once
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -8,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "host/base/clock.hpp"
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/ring_plan.hpp"
@@ -93,7 +93,7 @@ class RingRenderer {
     std::optional<RingState> resumed_;  // until the window is done in which it stood
     std::uint32_t band_ = 0;            // pixels of each PE's share
     double earlier_s_ = 0;              // of earlier runs
-    std::chrono::steady_clock::time_point started_;
+    Clock::time_point started_;
 };
 
 }  // namespace raya

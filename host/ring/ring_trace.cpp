@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "host/model/budget.hpp"
 #include "host/report/trace_file.hpp"
@@ -14,8 +13,6 @@ namespace {
 
 constexpr TraceTrack kPhases = {kTraceMachine, 1};
 constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above", "below"};
-
-std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(std::llround(ms * 1e6)); }
 
 // Puts one phase behind the other.
 class RingTimeline {

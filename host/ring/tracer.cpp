@@ -1,12 +1,11 @@
 #include "host/ring/tracer.hpp"
 
 #include <algorithm>
-#include <chrono>
+
+#include "host/base/clock.hpp"
 
 namespace raya {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // After a launch of so much that took `seconds`.
 std::uint32_t next_work(std::uint32_t work, std::uint32_t most, double seconds, double aim) {
@@ -71,7 +70,7 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
             continue;
         }
         done = standing.done;
-        work = next_work(work, work_.most, std::chrono::duration<double>(Clock::now() - start).count(), aim);
+        work = next_work(work, work_.most, seconds_since(start), aim);
         if (!progress) continue;
         const double all = 1.0 * pes_.count * (range.end - range.begin), begun = 1.0 * pes_.count * range.begin;
         progress(done ? 1.0 : (static_cast<double>(standing.taken) - begun) / all);

@@ -45,7 +45,7 @@ void fill_box(Scene& scene, const Vec3& low, const Vec3& sides, std::int64_t cou
     }
 }
 
-struct Ring {
+struct SphereRing {
     int count;
     double distance;  // of the centres from the z axis
     double height;    // of the centres
@@ -55,7 +55,7 @@ struct Ring {
     int surface_count;  // surfaces taken in turn
 };
 
-void add_ring(Scene& scene, const Ring& ring) {
+void add_ring(Scene& scene, const SphereRing& ring) {
     for (int i = 0; i < ring.count; ++i) {
         const double azimuth = 2 * std::numbers::pi * (ring.first + static_cast<double>(i) / ring.count);
         const Vec3 centre(rounded(ring.distance * std::cos(azimuth), kTenThousandths),

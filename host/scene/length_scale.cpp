@@ -33,19 +33,19 @@ double largest_length(const Scene& scene) {
     return largest;
 }
 
-/// Room between a scene at scale 1 and the limits of a format, in powers of two; negative: it is beyond them.
-struct Room {
+/// ScaleRange between a scene at scale 1 and the limits of a format, in powers of two; negative: it is beyond them.
+struct ScaleRange {
     double above, below;
 };
 
-Room room_of(const LengthScale& scale, const NumberFormat& format) {
+ScaleRange room_of(const LengthScale& scale, const NumberFormat& format) {
     const double smallest = smallest_number(format);
     return {std::log2(farthest_hit(format) / (4 * scale.largest)),
             std::min(std::log2(scale.smallest / std::sqrt(smallest)),
                      std::log2(std::ldexp(scale.largest, -format.fraction_bits - 1) / smallest))};
 }
 
-int exponent_for(const Room& room, bool has_planes) {
+int exponent_for(const ScaleRange& room, bool has_planes) {
     if (room.above >= 0 && room.below >= kSpare) return 0;
     return static_cast<int>(
         std::floor(std::min((room.above - room.below + 1) / 2, room.above - (has_planes ? kHorizon : 0))));

@@ -33,7 +33,7 @@ bool opens_mail(std::string_view line) {
 }  // namespace
 
 bool reads_as_entity(std::string_view keyword, std::string_view rest) {
-    constexpr int kMostWords = 2;
+    constexpr int kMostParts = 2;
     int numbers = 0, words = 0;
     rest = rest.substr(0, rest.find('#'));
     for (std::size_t at = 0; (at = rest.find_first_not_of(kBlanks, at)) != rest.npos;) {
@@ -44,7 +44,7 @@ bool reads_as_entity(std::string_view keyword, std::string_view rest) {
             ++words;
         at += word.size();
     }
-    return reads_as_keyword(keyword) && words <= (numbers > 0 ? kMostWords : 0);
+    return reads_as_keyword(keyword) && words <= (numbers > 0 ? kMostParts : 0);
 }
 
 bool opens_sense8(std::string_view word) {

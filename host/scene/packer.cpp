@@ -13,28 +13,28 @@
 namespace raya {
 namespace {
 
-// Words of one format, with lengths of one scale.
-struct Words : std::vector<std::uint32_t> {
+// JobWords of one format, with lengths of one scale.
+struct JobWords : std::vector<std::uint32_t> {
     NumberFormat format;
     double unit;  // what a length of 1 in the scene is in the job: a power of two
 
-    Words(const NumberFormat& of_numbers, double of_lengths) : format(of_numbers), unit(of_lengths) {}
+    JobWords(const NumberFormat& of_numbers, double of_lengths) : format(of_numbers), unit(of_lengths) {}
 };
 
-void put(Words& words, double value) {
+void put(JobWords& words, double value) {
     words.push_back(std::bit_cast<std::uint32_t>(round_to_format(value, words.format)));
 }
-void put(Words& words, const Vec3& v) {
+void put(JobWords& words, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(words, v[axis]);
 }
 // A length, a place, the square of a length, a number per length; put() takes what has no length in it.
 template <class Value>
-void put_length(Words& words, const Value& value) {
+void put_length(JobWords& words, const Value& value) {
     put(words, words.unit * value);
 }
-void put_square(Words& words, double value) { put(words, words.unit * words.unit * value); }
-void put_per_length(Words& words, const Vec3& v) { put(words, v / words.unit); }
-void put_index(Words& words, std::size_t value) { words.push_back(static_cast<std::uint32_t>(value)); }
+void put_square(JobWords& words, double value) { put(words, words.unit * words.unit * value); }
+void put_per_length(JobWords& words, const Vec3& v) { put(words, v / words.unit); }
+void put_index(JobWords& words, std::size_t value) { words.push_back(static_cast<std::uint32_t>(value)); }
 
 void store(float (&to)[3], const Vec3& from, const NumberFormat& format) {
     for (int axis = 0; axis < 3; ++axis) to[axis] = round_to_format(from[axis], format);
@@ -59,7 +59,7 @@ void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
           settings.format);
 }
 
-void pack_surface(Words& words, const Surface& s) {
+void pack_surface(JobWords& words, const Surface& s) {
     const Checker checker = s.checker.value_or(Checker{s.colour, s.colour, 0});
     put(words, checker.even);
     for (const double value : {s.diffuse, s.specular, s.shine, s.transmittance, s.refraction}) put(words, value);
@@ -94,7 +94,7 @@ struct Point2 {
 
 Point2 outline_point(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-void pack_corners(Words& words, const Face& face) {
+void pack_corners(JobWords& words, const Face& face) {
     for (const int corner : face.corners) {
         put_length(words, face.polygon->vertices[static_cast<std::size_t>(corner)]);
         put(words, 0);
@@ -102,7 +102,7 @@ void pack_corners(Words& words, const Face& face) {
 }
 
 // The shading normal as a linear function of the outline's coordinates.
-void pack_patch(Words& words, const Face& face, int axis) {
+void pack_patch(JobWords& words, const Face& face, int axis) {
     const auto corner = [&](int i) { return outline_point(face.polygon->vertices[face.corners[i]], axis); };
     const auto normal = [&](int i) { return face.polygon->normals[face.corners[i]]; };
     const Point2 a = corner(0);
@@ -116,14 +116,14 @@ void pack_patch(Words& words, const Face& face, int axis) {
     put_per_length(words, area != 0 ? (b.u * nc - c.u * nb) / area : Vec3(0));
 }
 
-void pack_faces(Words& words, const std::vector<Face>& faces, const std::vector<std::uint32_t>& surface_at) {
+void pack_faces(JobWords& words, const std::vector<Face>& faces, const std::vector<std::uint32_t>& surface_at) {
     const std::size_t polygons_at = words.size();
     words.resize(polygons_at + faces.size() * RAYA_POLYGON_WORDS);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Polygon& polygon = *faces[i].polygon;
         const Vec3 normal = newell_normal(polygon.vertices).normalized();
         const int axis = dropped_axis(normal);
-        Words record(words.format, words.unit);
+        JobWords record(words.format, words.unit);
         put(record, normal);
         put_length(record, normal.dot(polygon.vertices[0]));
         record.push_back(surface_at[polygon.surface]);
@@ -138,7 +138,7 @@ void pack_faces(Words& words, const std::vector<Face>& faces, const std::vector<
     }
 }
 
-void pack_cone(Words& words, const Cone& c, const std::vector<std::uint32_t>& surface_at) {
+void pack_cone(JobWords& words, const Cone& c, const std::vector<std::uint32_t>& surface_at) {
     const Vec3 along = c.apex - c.base;
     const double height = along.length(), r0 = std::abs(c.base_radius), r1 = std::abs(c.apex_radius);
     put_length(words, c.base);
@@ -149,9 +149,6 @@ void pack_cone(Words& words, const Cone& c, const std::vector<std::uint32_t>& su
     put(words, (r1 - r0) / height);
     put_index(words, c.base_radius < 0 || c.apex_radius < 0 ? 1 : 0);
 }
-
-// The largest job that 32-bit word numbers reach with room to spare: 4 GB.
-constexpr std::size_t kMostWords = std::size_t{1} << 30;
 
 }  // namespace
 
@@ -179,7 +176,7 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     job.ambient = round_to_format(ambient_intensity(scene), settings.format);
     job.extent = round_to_format(std::ldexp(scene_extent(scene), settings.length_exponent), settings.format);
 
-    Words words(settings.format, std::ldexp(1.0, settings.length_exponent));
+    JobWords words(settings.format, std::ldexp(1.0, settings.length_exponent));
     words.resize(kWordsOf<raya_job>);
     std::vector<std::uint32_t> surface_at;
     for (const Surface& s : scene.surfaces) {

@@ -18,6 +18,12 @@ namespace raya {
 template <class Record>
 inline constexpr std::size_t kWordsOf = sizeof(Record) / sizeof(std::uint32_t);
 
+/// The most words of a job or a node's memory: 32-bit word numbers reach them with room to spare. 4 GB.
+inline constexpr std::size_t kMostWords = std::size_t{1} << 30;
+
+/// `words`, filled up to rows of four (kernels read float4).
+constexpr std::size_t whole_rows(std::size_t words) { return (words + 3) / 4 * 4; }
+
 template <class Record>
 using WordsOf = std::array<std::uint32_t, kWordsOf<Record>>;
 

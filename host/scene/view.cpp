@@ -29,7 +29,7 @@ Direction direction_at(double degrees) {
     }
 }
 
-double rounded(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
+double millionths(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
@@ -64,7 +64,8 @@ Scene random_view(Scene scene, std::uint64_t seed) {
     const double height = random.uniform(std::sin(radians(kLowestView)), std::sin(radians(kHighestView)));
     const double azimuth = random.uniform(0, 2 * std::numbers::pi), level = std::sqrt(1 - height * height);
     const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * level;
-    view.from = view.at + Vec3(rounded(direction.x), rounded(direction.y), rounded(direction.z)) * arm.length();
+    view.from =
+        view.at + Vec3(millionths(direction.x), millionths(direction.y), millionths(direction.z)) * arm.length();
     return scene;
 }
 

@@ -8,7 +8,7 @@
 namespace raya {
 namespace {
 
-constexpr double kWordBytes = 4, kNsPerS = 1e9;
+constexpr double kBytesPerWord = 4, kNsPerS = 1e9;
 
 }  // namespace
 
@@ -189,7 +189,7 @@ void AsyncSimulation::set_rate(std::uint32_t link) {
     way.since = now_;
     double ns = 0;
     if (machine_.one_way > 0) {
-        way.rate = (ways_[way.back].carries ? machine_.both_ways / 2 : machine_.one_way) / (kWordBytes * kNsPerS);
+        way.rate = (ways_[way.back].carries ? machine_.both_ways / 2 : machine_.one_way) / (kBytesPerWord * kNsPerS);
         ns = way.words_left / way.rate;
     }
     foresee(std::max(0.0, ns), What::kCarried, link, ++way.version);

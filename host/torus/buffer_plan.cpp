@@ -31,9 +31,9 @@ std::uint64_t voxels_of(const Divisions& divisions) {
     return std::uint64_t{divisions[0]} * divisions[1] * divisions[2];
 }
 
-class Trial {
+class PlanTrial {
   public:
-    Trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels)
+    PlanTrial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels)
         : job_(job), format_(format), voxels_(voxels) {}
 
     std::optional<TrialNodes> operator()(const std::array<std::uint32_t, 3>& nodes) {
@@ -209,7 +209,7 @@ std::string queue_remedy(const QueueFound& found) {
 }
 
 NodeTrial trial_of(const PackedJob& job, const NumberFormat& format, const Divisions& voxels) {
-    return Trial(job, format, voxels);
+    return PlanTrial(job, format, voxels);
 }
 
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,

@@ -24,10 +24,10 @@ void require(bool right, std::size_t number, const char* what) {
     if (!right) throw std::logic_error(fmt::format("history: {} {}", what, number));
 }
 
-constexpr std::uint32_t kNone = UINT32_MAX;
+constexpr std::uint32_t kNobody = UINT32_MAX;
 
-std::uint32_t number(std::size_t count) {
-    if (count >= kNone) throw std::logic_error("history: more than 2^32 - 2 tasks or messages");
+std::uint32_t number_of(std::size_t count) {
+    if (count >= kNobody) throw std::logic_error("history: more than 2^32 - 2 tasks or messages");
     return static_cast<std::uint32_t>(count);
 }
 
@@ -127,7 +127,7 @@ std::uint16_t HistoryRecorder::words_of(std::uint32_t kind) const {
 }
 
 void HistoryRecorder::send(const Sent& sent) {
-    if (sent.message.kind != RAYA_KIND_RETURN) ray_of(sent.ray).message = number(history_.messages.size());
+    if (sent.message.kind != RAYA_KIND_RETURN) ray_of(sent.ray).message = number_of(history_.messages.size());
     history_.messages.push_back(sent.message);
 }
 
@@ -148,7 +148,7 @@ void HistoryRecorder::add_injection(const NodeWork& work) {
         const std::uint32_t state = treated ? t.state : waits.state;
         if (raya_state_kind(state) != RAYA_KIND_PRIMARY) continue;
         const std::uint64_t ray = numbers_.number_of(name_of(treated ? t.pixel : waits.pixel, 0, state));
-        if (ray_of(ray).message != kNone) continue;
+        if (ray_of(ray).message != kNobody) continue;
         const std::uint32_t to = treated ? work.node : goal_of(work.node, waits);
         made.push_back({{.to = to, .words = words_of(RAYA_KIND_PRIMARY), .kind = RAYA_KIND_PRIMARY}, ray});
     }
@@ -156,20 +156,20 @@ void HistoryRecorder::add_injection(const NodeWork& work) {
     for (Sent& ray : made) {
         const std::uint64_t share = cycles / left--;
         cycles -= share;
-        ray.message.task = number(history_.tasks.size());
-        history_.tasks.push_back({.node = work.node, .cycles = share, .first = number(history_.messages.size())});
+        ray.message.task = number_of(history_.tasks.size());
+        history_.tasks.push_back({.node = work.node, .cycles = share, .first = number_of(history_.messages.size())});
         send(ray);
     }
     in_vain_[work.node] = cycles;
 }
 
 void HistoryRecorder::add_treated(const NodeWork& work) {
-    const std::uint32_t first_message = number(history_.messages.size());
+    const std::uint32_t first_message = number_of(history_.messages.size());
     for (const raya_treated& t : work.treated) {
         if (t.state == RAYA_KIND_NONE) continue;
         Ray& ray = ray_of(numbers_.number_of(name_of(t.pixel, t.path, t.state)));
-        if (ray.message == kNone) throw std::logic_error("history: a packet that nobody sent");
-        ray.task = number(history_.tasks.size());
+        if (ray.message == kNobody) throw std::logic_error("history: a packet that nobody sent");
+        ray.task = number_of(history_.tasks.size());
         history_.tasks.push_back({.node = work.node, .cause = ray.message, .cycles = t.cycles, .first = first_message});
     }
 }
@@ -185,15 +185,15 @@ void HistoryRecorder::add_packets(const NodeWork& work, std::size_t first_task) 
         if (kind == RAYA_KIND_RETURN && !(h.state & RAYA_STATE_CHARGED)) continue;
         const RayName name = name_of(h.pixel, h.path, h.state);
         const std::uint64_t ray = numbers_.number_of(name);
-        const bool is_new = kind != RAYA_KIND_RETURN && kind != RAYA_KIND_PRIMARY && ray_of(ray).message == kNone;
+        const bool is_new = kind != RAYA_KIND_RETURN && kind != RAYA_KIND_PRIMARY && ray_of(ray).message == kNobody;
         const std::uint32_t task = ray_of(is_new ? numbers_.number_of(name.parent()) : ray).task;
-        if (task == kNone || task < first_task) continue;
+        if (task == kNobody || task < first_task) continue;
         made.push_back({{task, goal_of(work.node, h), words_of(kind), static_cast<std::uint16_t>(kind)}, ray});
     }
     std::ranges::stable_sort(made, {}, [](const Sent& sent) { return sent.message.task; });
     std::size_t next = 0;
     for (std::size_t task = first_task; task < history_.tasks.size(); ++task) {
-        history_.tasks[task].first = number(history_.messages.size());
+        history_.tasks[task].first = number_of(history_.messages.size());
         for (; next < made.size() && made[next].message.task == task; ++next) send(made[next]);
     }
 }
@@ -202,7 +202,7 @@ History HistoryRecorder::finish() {
     for (std::uint32_t node = 0; node < in_vain_.size(); ++node)
         if (in_vain_[node] > 0)
             history_.tasks.push_back(
-                {.node = node, .cycles = in_vain_[node], .first = number(history_.messages.size())});
+                {.node = node, .cycles = in_vain_[node], .first = number_of(history_.messages.size())});
     check_history(history_, raya_nodes(torus_));
     return std::move(history_);
 }

@@ -8,11 +8,9 @@
 namespace raya {
 namespace {
 
-using Words = std::span<const std::uint32_t>;
-
 constexpr std::uint64_t parts(std::uint64_t all, std::uint64_t part) { return (all + part - 1) / part; }
 
-std::vector<raya_voxel_memory> voxels_of(const raya_node& header, Words words) {
+std::vector<raya_voxel_memory> voxels_of(const raya_node& header, std::span<const std::uint32_t> words) {
     std::vector<raya_voxel_memory> voxels;
     for (std::uint32_t i = 0; i < header.voxels; ++i)
         voxels.push_back(record_at<raya_voxel_memory>(words, header.voxels_at + i * kWordsOf<raya_voxel_memory>));
@@ -21,7 +19,7 @@ std::vector<raya_voxel_memory> voxels_of(const raya_node& header, Words words) {
 
 std::uint64_t objects_of(const raya_objects& o) { return std::uint64_t{o.spheres} + o.planes + o.polygons + o.cones; }
 
-std::uint32_t most_corners(const raya_objects& objects, Words words) {
+std::uint32_t most_corners(const raya_objects& objects, std::span<const std::uint32_t> words) {
     std::uint32_t most = 0;
     for (std::uint32_t i = 0; i < objects.polygons; ++i)
         most = std::max(most, words[objects.polygons_at + i * RAYA_POLYGON_WORDS + RAYA_POLYGON_CORNERS]);
@@ -50,7 +48,7 @@ LaunchPlan::LaunchPlan(const TorusSettings& settings, const NodeMemories& memori
       exact_(options.exact_divide && device.correctly_rounded_divide_sqrt) {
     const bool root_injects = settings.inject == Injection::kRoot || raya_nodes(settings.torus) == 1;
     for (std::uint32_t slot = 0; slot < share.nodes(); ++slot) {
-        const Words words = Words(memories.words).subspan(memories.starts[slot]);
+        const auto words = std::span<const std::uint32_t>(memories.words).subspan(memories.starts[slot]);
         const auto header = record_at<raya_node>(words, 0);
         lights_ = header.job.lights;
         Node node{.voxels = header.voxels, .most = header.job.objects.planes};

@@ -14,11 +14,9 @@
 namespace raya {
 namespace {
 
-using Words = std::vector<std::uint32_t>;
 using Numbers = std::span<const std::uint32_t>;  // of objects in the whole scene, ascending
 
 // Of all nodes together: 4 GB, as for a job.
-constexpr std::uint64_t kMostWords = std::uint64_t{1} << 30;
 
 // Where a job keeps its parts.
 class JobParts {
@@ -51,7 +49,7 @@ class JobParts {
     }
 
   private:
-    const Words& words_;
+    const std::vector<std::uint32_t>& words_;
 };
 
 std::size_t outline_words(const std::uint32_t* polygon) {
@@ -72,8 +70,6 @@ VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32
     return {{first, last}, {first, polygons}, {polygons, cones}, {cones, last}};
 }
 
-std::uint64_t in_rows(std::uint64_t words) { return (words + 3) / 4 * 4; }
-
 class NodePacker {
   public:
     NodePacker(const PackedJob& job, const Partition& partition, const raya_torus& torus)
@@ -82,7 +78,7 @@ class NodePacker {
             throw std::logic_error("a partition needs one start more than voxels");
     }
 
-    // Words that a node takes.
+    // std::vector<std::uint32_t> that a node takes.
     std::uint64_t words(std::uint32_t node) {
         find_surfaces(node);
         const raya_job& h = job_.header;
@@ -92,15 +88,15 @@ class NodePacker {
                               std::uint64_t{h.objects.planes} * RAYA_PLANE_WORDS;
         for (std::uint32_t local = 0; local < voxels; ++local) {
             const VoxelLists lists = lists_of_local(node, local);
-            words = in_rows(words) + lists.all.size() + lists.spheres.size() * (RAYA_SPHERE_WORDS + 1) +
+            words = whole_rows(words) + lists.all.size() + lists.spheres.size() * (RAYA_SPHERE_WORDS + 1) +
                     lists.polygons.size() * RAYA_POLYGON_WORDS + lists.cones.size() * RAYA_CONE_WORDS;
             for (const std::uint32_t number : lists.polygons) words += outline_words(job_.object(number));
         }
-        return in_rows(words);
+        return whole_rows(words);
     }
 
     // Appends the node's words; returns the number of objects that it holds.
-    std::uint64_t append(std::uint32_t node, Words& to) {
+    std::uint64_t append(std::uint32_t node, std::vector<std::uint32_t>& to) {
         to_ = &to;
         start_ = to.size();
         raya_node header{};
@@ -143,7 +139,7 @@ class NodePacker {
     }
 
     // Rows start at a multiple of four words; so do nodes.
-    void fill_row() { to_->resize(start_ + in_rows(here())); }
+    void fill_row() { to_->resize(start_ + whole_rows(here())); }
 
     void need_surface(std::uint32_t at) {
         const std::size_t surface = job_.surface(at);
@@ -219,12 +215,12 @@ class NodePacker {
     JobParts job_;
     const Partition& partition_;
     const raya_torus torus_;
-    std::uint32_t searches_ = 0;             // of surfaces, so far
-    std::vector<std::uint32_t> seen_;        // [surface]: the last search that found it
-    std::vector<std::size_t> surfaces_;      // that the last search found
-    std::vector<std::uint32_t> surface_at_;  // [surface]: where it starts in the node that is being packed
-    Words* to_ = nullptr;                    // where that node goes, and
-    std::size_t start_ = 0;                  // where its first word lies there
+    std::uint32_t searches_ = 0;                // of surfaces, so far
+    std::vector<std::uint32_t> seen_;           // [surface]: the last search that found it
+    std::vector<std::size_t> surfaces_;         // that the last search found
+    std::vector<std::uint32_t> surface_at_;     // [surface]: where it starts in the node that is being packed
+    std::vector<std::uint32_t>* to_ = nullptr;  // where that node goes, and
+    std::size_t start_ = 0;                     // where its first word lies there
 };
 
 }  // namespace

@@ -1,9 +1,9 @@
 // What nodes tell the host: the census of a superstep, how packets come over links quickest, and messages for a
 // trace.
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
+#include "host/base/clock.hpp"
 #include "host/torus/node_array.hpp"
 
 namespace raya {
@@ -12,8 +12,6 @@ namespace {
 std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
     return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
 }
-
-using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kPackets = 32;  // in each box of a measurement
 constexpr int kTimes = 5;               // of which the shortest counts
@@ -119,7 +117,7 @@ double NodeArray::exchange_seconds() {
         rays_.exchange(status, words);
         homeward_.exchange(status, words);
         session_.finish();
-        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        const double seconds = seconds_since(start);
         if (i > 0) least = std::min(least, seconds);  // the first one may build the kernel
     }
     return least;

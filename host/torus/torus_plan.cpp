@@ -70,7 +70,7 @@ NodeMemories memories_of(const NodeMemories& all, const std::vector<std::uint32_
 }
 
 // All of a job but the nodes' words.
-struct Figures {
+struct TorusFigures {
     raya_job header;
     bool has_patches;
     LengthScale scale;
@@ -81,7 +81,7 @@ struct Figures {
 
 void send_to_others(const TorusJob& all, const NodeShare& share, Ranks& ranks) {
     const NodeMemories& m = all.memories;
-    Figures f{
+    TorusFigures f{
         all.outline.header(), all.outline.has_patches(), all.scale, all.buffers, all.words, all.fullest_words, m.copies,
         m.most_objects};
     ranks.broadcast(f);
@@ -93,7 +93,7 @@ void send_to_others(const TorusJob& all, const NodeShare& share, Ranks& ranks) {
 }
 
 TorusJob receive_job(const NodeShare& share, Ranks& ranks) {
-    Figures f;
+    TorusFigures f;
     ranks.broadcast(f);
     NodeMemories m;
     m.copies = f.copies;

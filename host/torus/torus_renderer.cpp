@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
+#include "host/base/clock.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/node_array.hpp"
@@ -15,10 +15,6 @@
 
 namespace raya {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Of what is to be done, by the mean of two measures: packets that are finished beside those that live, which tells the
 // time while all nodes compute, and says too much in the end, when few packets take as many supersteps; and how far the

@@ -35,8 +35,6 @@ static_assert(kWords < RAYA_RETURN_WORDS);
 static_assert(2 * RAYA_LINKS * (kT805MessageWordCycles * kWords + kT805MessageCycles) * kT805CycleNs <
               kWords * 1e9 * 2 * 4 / kT805BothWaysBytesPerS);
 
-double cycles_ms(std::uint64_t cycles) { return 1e-6 * kT805CycleNs * static_cast<double>(cycles); }
-
 // Processor's cycles for messages: of each node, what it sends and what it receives.
 std::vector<std::uint64_t> message_cycles(const raya_torus& torus, const TorusResult& result) {
     std::vector<std::uint64_t> cycles(raya_nodes(torus));
@@ -65,7 +63,7 @@ double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
 double stepwise_ms(const std::vector<Superstep>& supersteps) {
     double sum = 0;
     for (const Superstep& step : supersteps)
-        sum += cycles_ms(step.most_cycles) + t805_link_ms(step.most_link_words, step.most_link_words);
+        sum += t805_ms(step.most_cycles) + t805_link_ms(step.most_link_words, step.most_link_words);
     return sum;
 }
 
@@ -111,9 +109,9 @@ TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
     for (std::size_t node = 0; node < nodes; ++node)
         processor = std::max(processor, result.load.per_pe[node] + messages[node]);
     TorusTime time;
-    time.compute_ms = cycles_ms(result.load.max);
-    time.messages_ms = cycles_ms(*std::max_element(messages.begin(), messages.end()));
-    time.processor_ms = cycles_ms(processor);
+    time.compute_ms = t805_ms(result.load.max);
+    time.messages_ms = t805_ms(*std::max_element(messages.begin(), messages.end()));
+    time.processor_ms = t805_ms(processor);
     time.links_ms = busiest_link_ms(torus, result);
     time.overlapped_ms = std::max(time.processor_ms, time.links_ms);
     time.stepwise_ms = stepwise_ms(result.supersteps);

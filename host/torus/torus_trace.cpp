@@ -20,7 +20,6 @@ namespace raya {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 16;  // bytes of text that are compressed at a time
-constexpr std::uint32_t kWordBytes = 4;
 
 // A packet's own number and its parent's, which a primary ray lacks.
 struct Lineage {
@@ -55,9 +54,7 @@ void check_head(const PacketRecord& record) {
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
 constexpr std::uint32_t kFirstNode = 2;  // track of node 0
 
-double cycles_ms(std::uint64_t cycles) { return 1e-6 * kT805CycleNs * static_cast<double>(cycles); }
 double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }  // as torus_time() has it
-std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(std::llround(ms * 1e6)); }
 TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNode + node}; }
 
 // Links on the way of a packet.
@@ -84,7 +81,7 @@ void PacketTrace::add(const PacketRecord& record) {
     const Lineage lineage = lineage_of(numbers_, record);
     auto to = std::back_inserter(text_);
     fmt::format_to(to, "{},{},{},{},{},{},", record.superstep, record.source, record.destination, kind,
-                   kWordBytes * record.words, lineage.ray);
+                   sizeof(std::uint32_t) * record.words, lineage.ray);
     if (lineage.parent) fmt::format_to(to, "{}", *lineage.parent);
     text_ += '\n';
     ++rows_;
@@ -134,7 +131,7 @@ class TorusTrace::Timeline {
         for (std::size_t step = 0; step < seen_.steps_.size(); ++step) {
             const Superstep& all = result_.supersteps[step];
             begins_.push_back(now_ms_);
-            const double computed = now_ms_ + cycles_ms(all.most_cycles);
+            const double computed = now_ms_ + t805_ms(all.most_cycles);
             computed_.push_back(computed);
             const double end = computed + link_ms(all.most_link_words);
             add_machine(step, end);
@@ -192,7 +189,7 @@ class TorusTrace::Timeline {
                 trace_.slice(track, name, nanoseconds(from), nanoseconds(to), arguments);
         };
         trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end));
-        const double done = now_ms_ + cycles_ms(n.cycles), sent = computed + link_ms(n.link_words);
+        const double done = now_ms_ + t805_ms(n.cycles), sent = computed + link_ms(n.link_words);
         slice("compute", now_ms_, done, {{"cycles", n.cycles}});
         slice("wait for the busiest node", done, computed);
         slice("exchange", computed, sent, {{"busiest_link_words", n.link_words}, {"words", n.words}});

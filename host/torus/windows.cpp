@@ -50,7 +50,7 @@ class Projection {
     double step_, margin_, longest_ = 0;
 };
 
-struct Bounds {
+struct ScreenBounds {
     double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     bool whole = false;  // no bounds are known
@@ -81,7 +81,7 @@ std::vector<Vec3> part_before(const Projection& projection, const std::array<Vec
 }
 
 // The face of a voxel across an axis, at its plane k, which is so far from the eye.
-void add_face(Bounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
+void add_face(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
               std::uint32_t axis, std::uint32_t k, double distance) {
     const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
     std::array<Vec3, 4> face;
@@ -100,7 +100,7 @@ void add_face(Bounds& bounds, const Projection& projection, const raya_grid& gri
     }
 }
 
-void add_voxel(Bounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
+void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
     const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
     bool holds_eye = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -132,7 +132,7 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
     const std::uint32_t width = job.mapping.width, height = job.mapping.height;
     std::vector<PixelWindow> windows;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
-        Bounds bounds;
+        ScreenBounds bounds;
         const std::uint32_t voxels = raya_node_voxels(torus, grid, node);
         bounds.whole = voxels > 0 && format.fraction_bits < kFewestBits;
         for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)

@@ -75,7 +75,7 @@ TunedFile file_of(const Json& json, const DeviceInfo& device) {
     return file;
 }
 
-constexpr std::uint64_t kMostBytes = 1 << 20;
+constexpr std::uint64_t kLongestFile = 1 << 20;
 
 std::optional<TunedFile> read_kept(const fs::path& path, const DeviceInfo& device) {
     std::error_code none;
@@ -83,7 +83,7 @@ std::optional<TunedFile> read_kept(const fs::path& path, const DeviceInfo& devic
     if (const std::string why = other_writers(fs::canonical(path, none), {::geteuid()}, Sticky::kRefused, path);
         !why.empty())
         throw UserError(why);
-    return read_tuned(json_text(path, {path}, Pipes::kRefused, kMostBytes), path, device);
+    return read_tuned(json_text(path, {path}, Pipes::kRefused, kLongestFile), path, device);
 }
 
 // Of a name what file systems take.

@@ -44,7 +44,7 @@ const Variant& variant_named(const std::string& name) {
 
 constexpr std::uint32_t kBounces = 8;
 
-struct Picture {
+struct TrialPicture {
     Scene scene;
     ImageSize size;
 };
@@ -58,7 +58,7 @@ Scene scene_of(const TrialRenders& render, const Variant& variant) {
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
 }
 
-Picture picture_of(const TrialOrder& order) {
+TrialPicture picture_of(const TrialOrder& order) {
     const Variant& variant = variant_named(order.workload.variant);
     const ImageSize& size = order.render.size;
     return {scene_of(order.render, variant), size.width ? size : ImageSize{variant.side, variant.side}};
@@ -198,7 +198,7 @@ double mean_seconds(const std::function<double()>& seconds) {
 
 void run_trial(int lines, const Json& json) {
     const TrialOrder order = order_of(json);
-    const Picture picture = picture_of(order);
+    const TrialPicture picture = picture_of(order);
     Session session(choose_device(order.render.device));
     std::vector<NextImage> renders;
     for (const TunedValues& values : order.candidates) {

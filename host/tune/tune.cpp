@@ -5,18 +5,14 @@
 #include <algorithm>
 #include <chrono>
 
+#include "host/base/clock.hpp"
 #include "host/base/json.hpp"
 #include "host/base/own_process.hpp"
-#include "host/base/utc_time.hpp"
 #include "host/error.hpp"
 #include "host/version.hpp"
 
 namespace raya {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // What a process has told of a trial.
 class Told {
@@ -91,7 +87,7 @@ Trial supervise_trial(const TrialOrder& order, double limit_s, const std::string
 }
 
 constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;
-constexpr double kPatience = 10;  // limits that the defaults, and a comparison in the end, may take
+constexpr double kLimitFactor = 10;  // limits that the defaults, and a comparison in the end, may take
 
 class Tuner {
   public:
@@ -127,7 +123,7 @@ class Tuner {
     }
 
     Trial defaults() {
-        const Trial first = trial({result_.space.defaults}, 1, kPatience * settings_.limit_s, false);
+        const Trial first = trial({result_.space.defaults}, 1, kLimitFactor * settings_.limit_s, false);
         if (first.fate == Fate::kCorrect) return first;
         throw DeviceError(
             fmt::format("{}: the defaults cannot be measured: {}; remedy: raya verify tells what is wrong",
@@ -147,7 +143,7 @@ class Tuner {
     void hold_against_defaults(const TunedValues& found) {
         result_.best = result_.space.defaults;
         if (found == result_.best) return;
-        const Trial last = trial({result_.best, found}, kFinalSamples, kPatience * settings_.limit_s, false);
+        const Trial last = trial({result_.best, found}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
         if (!wins_surely(last)) return;
         result_.best = found;
         result_.ratio = median_ratio(last.samples[1], last.samples[0]);
@@ -164,7 +160,7 @@ class Tuner {
         result_.best_all = result_.space.values_of(all.best);
         if (*result_.best_all == result_.best) return;
         const Trial last =
-            trial({*result_.best_all, result_.best}, kFinalSamples, kPatience * settings_.limit_s, false);
+            trial({*result_.best_all, result_.best}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
         if (last.fate == Fate::kCorrect) result_.ratio_all = median_ratio(last.samples[1], last.samples[0]);
     }
 

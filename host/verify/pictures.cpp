@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-constexpr const char* kHeading =
+constexpr const char* kPicturesHeading =
     "# Hashes, counts and pixels of pictures, made by tests/verify/make_pictures.cpp: do not edit.\n"
     "# \"NAME: HASH\"; \"counts WAY: COUNTER NUMBER ...\"; then a line a row: bits of RED/GREEN/BLUE, "
     "hexadecimal\n"
@@ -123,7 +123,7 @@ std::vector<KnownPicture> parse_pictures(const std::string& text) {
 }
 
 std::string pictures_text(const std::vector<KnownPicture>& all) {
-    std::string text = kHeading;
+    std::string text = kPicturesHeading;
     std::vector<std::string> before(kPictureSide * kPictureSide);
     for (const KnownPicture& picture : all) {
         text += fmt::format("{}: {}\n", picture.name, picture.hash);

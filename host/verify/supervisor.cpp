@@ -7,6 +7,7 @@
 #include <csignal>
 #include <optional>
 
+#include "host/base/clock.hpp"
 #include "host/base/json.hpp"
 #include "host/base/own_process.hpp"
 #include "host/cl/driver.hpp"
@@ -84,8 +85,6 @@ void refuse_no_checks(const cl::Device& device, const VerifySettings& settings) 
 
 // In the process that starts it.
 
-using Clock = std::chrono::steady_clock;
-
 std::vector<std::string> remedies(const std::string& full_name, int status, const VerifySettings& settings) {
     std::vector<std::string> all;
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -131,7 +130,7 @@ class Supervision {
         std::string layer, name;
     };
 
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    double seconds() const { return seconds_since(start_); }
 
     void take(const Json& line) {
         if (const Json* error = line.find("error")) refuse(line.at("kind").text(), error->text());

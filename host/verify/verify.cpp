@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <sstream>
 
+#include "host/base/clock.hpp"
 #include "host/base/json.hpp"
 #include "host/cl/program.hpp"
 #include "host/error.hpp"
@@ -81,10 +81,9 @@ const char* outcome_name(Outcome outcome) {
 }
 
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body) {
-    using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     Check check{layer, name, 0, verdict_of(body)};
-    check.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    check.seconds = seconds_since(start);
     return check;
 }
 

@@ -116,4 +116,7 @@ inline reference::Ray random_walk_ray(SplitMix& random, const raya_grid& grid) {
     }
 }
 
+/// The most voxels that a ray goes through.
+inline std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
+
 }  // namespace raya

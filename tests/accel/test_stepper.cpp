@@ -17,8 +17,6 @@ struct Walks {
     std::vector<float> leaves;          // [ray][most]
 };
 
-std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
-
 std::vector<std::uint32_t> words_of(const raya_grid& grid) {
     std::vector<std::uint32_t> words(kWordsOf<raya_grid>);
     put_record(words, 0, grid);

@@ -14,9 +14,9 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kGrids = 50, kRays = 2048;  // in each grid
+constexpr std::size_t kWalkedGrids = 50, kWalkedRays = 2048;  // in each grid
 
-struct Walks {
+struct VoxelWalks {
     std::vector<std::uint32_t> wide, voxels;  // [ray], [ray][most]
     std::vector<float> leaves;                // [ray][most]
     std::vector<float> resumed_leaves;        // [ray][most]: of walks taken up anew in each voxel
@@ -29,9 +29,7 @@ std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
     return words;
 }
 
-std::uint32_t most_voxels(const raya_grid& g) { return g.divisions[0] + g.divisions[1] + g.divisions[2] + 1; }
-
-Walks walk(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
+VoxelWalks walk(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
     const std::size_t count = rays.size() / 7;
     const std::uint32_t most = most_voxels(grid);
     const auto grid_buffer = runner.filled("grid", grid_words(grid));
@@ -56,7 +54,7 @@ struct Path {
     std::vector<float> leaves;
 };
 
-Path path_of(const Walks& walks, std::size_t ray, std::uint32_t most) {
+Path path_of(const VoxelWalks& walks, std::size_t ray, std::uint32_t most) {
     Path path;
     for (std::size_t i = ray * most; i < (ray + 1) * most && walks.voxels[i] != RAYA_NO_VOXEL; ++i) {
         path.voxels.push_back(walks.voxels[i]);
@@ -132,7 +130,7 @@ struct WalkCase {
     explicit WalkCase(std::uint64_t seed) {
         SplitMix random(seed);
         grid = random_grid(random);
-        for (std::size_t i = 0; i < kRays; ++i) {
+        for (std::size_t i = 0; i < kWalkedRays; ++i) {
             rays.push_back(random_walk_ray(random, grid));
             limits.push_back(random_limit(random, grid, rays.back()));
         }
@@ -164,26 +162,26 @@ void check_walk(const raya_grid& grid, const reference::Ray& ray, double limit, 
 TEST_CASE("a walk visits the voxels that the ray crosses, one after another") {
     KernelRunner runner("tests/accel/walk_probe.cl", {1, true, {}});
     std::size_t visits = 0, empty = 0;
-    for (std::size_t seed = 0; seed < kGrids; ++seed) {
+    for (std::size_t seed = 0; seed < kWalkedGrids; ++seed) {
         const WalkCase c(seed);
-        const Walks walks = walk(runner, c.grid, c.words());
+        const VoxelWalks walks = walk(runner, c.grid, c.words());
         CAPTURE(seed, c.grid.divisions, c.grid.low, c.grid.cell);
-        for (std::size_t i = 0; i < kRays; ++i) {
+        for (std::size_t i = 0; i < kWalkedRays; ++i) {
             const Path path = path_of(walks, i, most_voxels(c.grid));
             check_walk(c.grid, c.rays[i], c.limits[i], path);
             visits += path.voxels.size();
             empty += path.voxels.empty();
         }
     }
-    CHECK(empty > kGrids * kRays / 10);
-    CHECK(visits > kGrids * kRays * 10);
+    CHECK(empty > kWalkedGrids * kWalkedRays / 10);
+    CHECK(visits > kWalkedGrids * kWalkedRays * 10);
 }
 
 TEST_CASE("a walk that is taken up in any of its voxels goes on as before") {
     KernelRunner runner("tests/accel/walk_probe.cl", {16, true, {}});
-    for (std::size_t seed = 0; seed < kGrids / 2; ++seed) {
+    for (std::size_t seed = 0; seed < kWalkedGrids / 2; ++seed) {
         const WalkCase c(seed);
-        const Walks walks = walk(runner, c.grid, c.words());
+        const VoxelWalks walks = walk(runner, c.grid, c.words());
         CAPTURE(seed);
         REQUIRE(bits(walks.resumed_leaves) == bits(walks.leaves));
         std::vector<std::uint32_t> nexts(walks.voxels.size(), RAYA_NO_VOXEL);
@@ -194,14 +192,14 @@ TEST_CASE("a walk that is taken up in any of its voxels goes on as before") {
 }
 
 TEST_CASE("walks of all widths of lanes are the same to the bit") {
-    std::vector<Walks> first;
+    std::vector<VoxelWalks> first;
     for (const Variant& variant : variants()) {
         CAPTURE(variant.name());
         KernelRunner runner("tests/accel/walk_probe.cl", variant);
         constexpr std::size_t kFewGrids = 8;
         for (std::size_t seed = 0; seed < kFewGrids; ++seed) {
             const WalkCase c(seed);
-            const Walks walks = walk(runner, c.grid, c.words());
+            const VoxelWalks walks = walk(runner, c.grid, c.words());
             if (first.size() < kFewGrids) first.push_back(walks);
             CAPTURE(seed);
             REQUIRE(walks.voxels == first[seed].voxels);

@@ -11,7 +11,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kSource = R"(
+const std::string kProgramSource = R"(
 kernel void scale(global const float* restrict from, const float factor, global float* restrict to) {
     to[get_global_id(0)] = factor * from[get_global_id(0)] + RAYA_SHIFT;
 }
@@ -23,7 +23,9 @@ kernel void reverse_group(global int* words, local int* scratch) {
 }
 )";
 
-Program build_test_program(const Session& session) { return session.build("test", kSource, {"-DRAYA_SHIFT=0.5f"}); }
+Program build_test_program(const Session& session) {
+    return session.build("test", kProgramSource, {"-DRAYA_SHIFT=0.5f"});
+}
 
 }  // namespace
 
@@ -106,12 +108,12 @@ TEST_CASE("programs that are kept are built once for each text and options", "[c
     const auto build = [&](const char* shift, const std::string& source) {
         return session.build("test", source, {shift});
     };
-    build("-DRAYA_SHIFT=0.5f", kSource);
-    build("-DRAYA_SHIFT=0.5f", kSource);
+    build("-DRAYA_SHIFT=0.5f", kProgramSource);
+    build("-DRAYA_SHIFT=0.5f", kProgramSource);
     CHECK(steps.steps().size() == 1);
-    build("-DRAYA_SHIFT=1.5f", kSource);
-    build("-DRAYA_SHIFT=0.5f", kSource + "\n");
+    build("-DRAYA_SHIFT=1.5f", kProgramSource);
+    build("-DRAYA_SHIFT=0.5f", kProgramSource + "\n");
     CHECK(steps.steps().size() == 3);
-    CHECK(build("-DRAYA_SHIFT=1.5f", kSource).options() == "-DRAYA_SHIFT=1.5f");
+    CHECK(build("-DRAYA_SHIFT=1.5f", kProgramSource).options() == "-DRAYA_SHIFT=1.5f");
     CHECK(steps.steps().size() == 3);
 }

@@ -9,8 +9,6 @@
 
 namespace raya {
 
-using Words = std::vector<std::string>;
-
 /// Runs raya, which must leave `outputs` as empty as it is.
 inline void check_refused(const ScratchFolder& outputs, const Words& arguments, int code, const Words& message,
                           const Surroundings& around = {}) {

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -219,6 +220,27 @@ inline bool has_line(const std::string& text, const std::string& pattern) {
     for (std::string line; std::getline(lines, line);)
         if (std::regex_match(line, regex)) return true;
     return false;
+}
+
+using Words = std::vector<std::string>;
+
+/// The words between blanks.
+inline Words words_of(const std::string& line) {
+    std::istringstream text(line);
+    return {std::istream_iterator<std::string>(text), {}};
+}
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) all.push_back(line);
+    return all;
+}
+
+inline std::size_t longest_line(const std::string& text) {
+    std::size_t longest = 0;
+    for (const std::string& line : lines_of(text)) longest = std::max(longest, line.size());
+    return longest;
 }
 
 inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }

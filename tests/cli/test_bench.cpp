@@ -17,8 +17,6 @@ Words small_bench(const Words& more) {
     return arguments;
 }
 
-Document json_of(const std::filesystem::path& path) { return Document::parse(file_contents(path)); }
-
 /// A copy of the report in which the row was `factor` times as fast, or another image.
 std::string changed(const ScratchFolder& folder, const std::string& name, double factor, const std::string& hash = {}) {
     Document json = json_of(folder / "base.json");

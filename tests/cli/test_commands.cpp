@@ -11,21 +11,12 @@
 
 namespace raya {
 namespace {
-using Words = std::vector<std::string>;
-
 RunOutcome succeed(const Words& arguments) {
     RunOutcome run = run_raya(arguments);
     INFO(run.told());
     REQUIRE(run.code == 0);
     CHECK(run.messages().empty());
     return run;
-}
-
-Words words_of(const std::string& line) {
-    std::istringstream text(line);
-    Words words;
-    for (std::string word; text >> word;) words.push_back(word);
-    return words;
 }
 
 std::vector<Words> lines_that_start_with(const std::string& text, const std::string& word) {

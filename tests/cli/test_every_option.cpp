@@ -12,8 +12,6 @@
 namespace raya {
 namespace {
 
-using Words = std::vector<std::string>;
-
 constexpr const char* kNoDevice = "no-such-device";
 const Words kOddValues = {"x", "-1", "1e400", "99999999999999999999", "nan", "\x1b[31m"};
 

@@ -12,13 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Words words_of(const std::string& line) {
-    std::istringstream text(line);
-    Words words;
-    for (std::string word; text >> word;) words.push_back(word);
-    return words;
-}
-
 /// The words behind each "raya" of a shell's line, up to what ends that call.
 std::vector<Words> calls_in(std::string line) {
     for (const char* sign : {"<(", ")", "|", "&&", ">"})

@@ -20,19 +20,6 @@ std::string help_of(Words words, const std::string& columns = "") {
     return run.out;
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> all;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) all.push_back(line);
-    return all;
-}
-
-std::size_t longest_line(const std::string& text) {
-    std::size_t longest = 0;
-    for (const std::string& line : lines_of(text)) longest = std::max(longest, line.size());
-    return longest;
-}
-
 /// What raya prints on a terminal of so many columns.
 std::string on_terminal(Words words, unsigned short columns) {
     winsize size{};

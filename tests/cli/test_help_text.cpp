@@ -35,13 +35,6 @@ CommandText small_command() {
     return command;
 }
 
-std::size_t longest_line(const std::string& text) {
-    std::size_t longest = 0;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
-    return longest;
-}
-
 TEST_CASE("help begins with usage, and its parts stand below headings", "[manual]") {
     CHECK(help_text(small_command(), "raya draw", 80) == R"(Usage: raya draw SCENE -o FILE [OPTIONS]
 

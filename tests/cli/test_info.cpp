@@ -11,11 +11,11 @@ namespace raya {
 namespace {
 
 /// No implementation of OpenCL is found, so that whoever asks for a device fails.
-const Surroundings kNoDevice{.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
+const Surroundings kNoDriver{.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
 
 Document info_of(const std::string& scene, Words options = {}) {
     options.insert(options.begin(), {"info", scene, "--json"});
-    const RunOutcome run = run_raya(options, kNoDevice);
+    const RunOutcome run = run_raya(options, kNoDriver);
     INFO(run.told());
     REQUIRE(run.code == 0);
     return Document::parse(run.out);
@@ -164,7 +164,7 @@ TEST_CASE("info counts what the reader reads, and tells what was skipped", "[cli
     write_whole_file(file,
                      "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\nla 1 1 1\n"
                      "s 0 0 0 1\ns 9 9 9 1e-9\n");
-    const RunOutcome run = run_raya({"info", file, "--format", "spa22", "--from", "0,-1e6,0"}, kNoDevice);
+    const RunOutcome run = run_raya({"info", file, "--format", "spa22", "--from", "0,-1e6,0"}, kNoDriver);
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK_THAT(run.err, Catch::Contains("warning: " + file + ":8: entity 'la'"));
@@ -205,7 +205,7 @@ TEST_CASE("info refuses what no machine can be", "[cli]") {
     check_refused(none, {"info", scene, "--from", "1,2"}, 2, {"--from 1,2"});
     check_refused(none, {"info", scene, "--device", "0"}, 2, {"no option --device"});
     check_refused(none, {"info", none / "no.nff"}, 2, {"no.nff: cannot read the scene"});
-    const RunOutcome run = run_raya({"info", scene, "--offset", "3"}, kNoDevice);
+    const RunOutcome run = run_raya({"info", scene, "--offset", "3"}, kNoDriver);
     CHECK(run.code == 0);
     CHECK_THAT(run.out, Catch::Contains("cap: --offset 3"));  // the others can
 }

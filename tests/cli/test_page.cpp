@@ -13,14 +13,12 @@ namespace {
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
-using Words = std::vector<std::string>;
-
 Words joined(Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
 
-Words small_render(const ScratchFolder& folder, const Words& more = {}) {
+Words render_of_24(const ScratchFolder& folder, const Words& more = {}) {
     return joined(
         {"render", scene_file("planes"), "--size", "24x16", "--lanes", "4", "--quiet", "-o", folder / "c.pfm"}, more);
 }
@@ -52,7 +50,7 @@ TEST_CASE("the page of a render is what raya page makes of its report", "[cli][p
     const ScratchFolder folder;
     for (const Words& more : {Words{"--pes", "20"}, Words{"--machine", "torus", "--nodes", "2x2x2"},
                               Words{"--mapping", "dynamic:4", "--pes", "6"}}) {
-        const std::string html = check_page(folder, small_render(folder, more));
+        const std::string html = check_page(folder, render_of_24(folder, more));
         const Document report = Document::parse(file_contents(folder / "r.json"));
         for (const std::string& part :
              {report["image"]["hash"].get<std::string>(), report["device"]["driver"].get<std::string>(),
@@ -65,11 +63,11 @@ TEST_CASE("the page of a render is what raya page makes of its report", "[cli][p
 
 TEST_CASE("a page is written without a report, and a report has what a page needs", "[cli][page]") {
     const ScratchFolder folder;
-    const RunOutcome run = run_raya(small_render(folder, {"--page", folder / "r.html"}));
+    const RunOutcome run = run_raya(render_of_24(folder, {"--page", folder / "r.html"}));
     INFO(run.told());
     CHECK(run.code == 0);
     CHECK(folder.entries() == 2);
-    REQUIRE(run_raya(small_render(folder, {"--report", folder / "r.json"})).code == 0);
+    REQUIRE(run_raya(render_of_24(folder, {"--report", folder / "r.json"})).code == 0);
     const RunOutcome made = page_of_file(folder / "r.json", folder / "again.html", {"--quiet"});
     CHECK(made.code == 0);
     CHECK(made.out.empty());
@@ -99,7 +97,7 @@ TEST_CASE("the page of a bench has rates, comparison and roofline", "[cli][page]
 
 TEST_CASE("what raya page refuses names the reason and leaves nothing behind", "[cli][page]") {
     const ScratchFolder folder, written;
-    REQUIRE(run_raya(small_render(written, {"--report", written / "r.json"})).code == 0);
+    REQUIRE(run_raya(render_of_24(written, {"--report", written / "r.json"})).code == 0);
     const Document good = Document::parse(file_contents(written / "r.json"));
     const auto changed = [&](const std::string& name, const auto& change) {
         Document report = good;
@@ -135,7 +133,7 @@ TEST_CASE("what raya page refuses names the reason and leaves nothing behind", "
     const RunOutcome known = page_of_file(changed("more.json", [](Document& r) { r["later"] = {{"a", 1}}; }), page);
     INFO(known.told());
     CHECK(known.code == 0);
-    const RunOutcome twice = run_raya(small_render(folder, {"--report", page, "--page", page}));
+    const RunOutcome twice = run_raya(render_of_24(folder, {"--report", page, "--page", page}));
     CHECK(twice.code == 2);
     CHECK_THAT(twice.err, Contains("the same file as --report"));
 }

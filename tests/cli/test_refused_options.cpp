@@ -11,14 +11,14 @@
 namespace raya {
 namespace {
 
-struct Row {
+struct OptionsRow {
     Words options;
     Words message;
 };
 
-void check_render_options(const std::vector<Row>& rows) {
+void check_render_options(const std::vector<OptionsRow>& rows) {
     const ScratchFolder outputs;
-    for (const Row& row : quick_of(3, rows))
+    for (const OptionsRow& row : quick_of(3, rows))
         check_refused(outputs, render_into(outputs, scene_file("planes"), row.options), 2, row.message);
 }
 

@@ -41,7 +41,7 @@ Names with(const Names& names, const std::vector<std::string>& parts) {
     return found;
 }
 
-std::vector<std::string> small_render(const std::string& image) {
+std::vector<std::string> render_of_4(const std::string& image) {
     return {"render", scene_file("planes"), "-o", image, "--size", "4", "--pes", "4", "--lanes", "4"};
 }
 
@@ -61,9 +61,8 @@ TEST_CASE("devices and renders to PFM and PPM load neither OpenImageIO nor TBB n
     const ScratchFolder outputs;
     const std::vector<std::string> heavy = {"raya_", "OpenImageIO", "libtbb", "libmpi", "libopen-"};  // of Open MPI
     CHECK(with(libraries_of({"devices"}), heavy).empty());
-    for (const char* image : {"x.pfm", "x.ppm"})
-        CHECK(with(libraries_of(small_render(outputs / image)), heavy).empty());
-    CHECK(with(libraries_of(small_render(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
+    for (const char* image : {"x.pfm", "x.ppm"}) CHECK(with(libraries_of(render_of_4(outputs / image)), heavy).empty());
+    CHECK(with(libraries_of(render_of_4(outputs / "x.png")), {"raya_pictures", "OpenImageIO"}).size() >= 2);
 }
 
 TEST_CASE("what is wrong with inputs is refused before a driver or OpenImageIO is loaded", "[cli]") {

@@ -28,8 +28,6 @@ const std::string kRaya = std::string("'") + RAYA_PROGRAM + "' ";
 const std::string kRender = kRaya + "render ";
 const std::string kSmall = " --size 12 --pes 12 --lanes 4 ";
 
-Document json_of(const std::filesystem::path& file) { return Document::parse(file_contents(file)); }
-
 TEST_CASE("a scene from stdin and a picture to stdout are those of files", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};

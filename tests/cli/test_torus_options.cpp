@@ -7,15 +7,15 @@
 namespace raya {
 namespace {
 
-struct Row {
+struct TorusRow {
     Words options;
     Words message;
 };
 
 /// A render of a small picture on `machine`, which must be refused with every message.
-void check_refused_on(const std::string& machine, const std::vector<Row>& rows) {
+void check_refused_on(const std::string& machine, const std::vector<TorusRow>& rows) {
     const ScratchFolder outputs;
-    for (const Row& row : quick_of(3, rows)) {
+    for (const TorusRow& row : quick_of(3, rows)) {
         Words arguments = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--machine", machine};
         arguments.insert(arguments.end(), row.options.begin(), row.options.end());
         check_refused(outputs, arguments, 2, row.message);

@@ -10,8 +10,6 @@
 namespace raya {
 namespace {
 
-using Words = std::vector<std::string>;
-
 struct TracedRun {
     RunOutcome run;
     Document trace, report;

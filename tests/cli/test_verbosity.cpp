@@ -9,21 +9,14 @@
 namespace raya {
 namespace {
 
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> all;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) all.push_back(line);
-    return all;
-}
-
-Words small_render(const ScratchFolder& folder, const Words& options) {
+Words render_of_16(const ScratchFolder& folder, const Words& options) {
     Words words = {"render", scene_file("planes"), "-o", folder / "x.ppm", "--size", "16", "--pes", "4", "--lanes",
                    "4"};
     words.insert(words.end(), options.begin(), options.end());
     return words;
 }
 
-RunOutcome succeed(const Words& words) {
+RunOutcome run_of(const Words& words) {
     RunOutcome run = run_raya(words);
     INFO(run.told());
     REQUIRE(run.code == 0);
@@ -46,10 +39,10 @@ std::string scene_to_be_warned_of(const ScratchFolder& folder) {
 
 TEST_CASE("-v says on stderr what the host does, and changes nothing on stdout", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const RunOutcome usual = succeed(small_render(folder, {}));
+    const RunOutcome usual = run_of(render_of_16(folder, {}));
     CHECK(usual.messages().empty());
     const std::string picture = file_contents(folder / "x.ppm");
-    const RunOutcome run = succeed(small_render(folder, {"-v"}));
+    const RunOutcome run = run_of(render_of_16(folder, {"-v"}));
     INFO(run.err);
     CHECK(without_times(run.out) == without_times(usual.out));
     CHECK(file_contents(folder / "x.ppm") == picture);
@@ -85,7 +78,7 @@ TEST_CASE("the first compiling of kernels is announced without a terminal, and t
 TEST_CASE("-vv tells builds and the device's times too", "[cli][verbosity]") {
     const ScratchFolder folder;
     for (const Words& twice : {Words{"-vv"}, Words{"--verbose", "-v"}}) {
-        const RunOutcome run = succeed(small_render(folder, twice));
+        const RunOutcome run = run_of(render_of_16(folder, twice));
         INFO(run.err);
         for (const std::string& line : lines_of(run.err)) CHECK_THAT(line, Catch::StartsWith("raya: "));
         CHECK_THAT(run.err, Catch::Contains("raya: build ring/trace.cl: options -cl-std=CL1.2 "));
@@ -96,15 +89,15 @@ TEST_CASE("-vv tells builds and the device's times too", "[cli][verbosity]") {
 TEST_CASE("-q leaves warnings, -qq leaves them out, and neither an error", "[cli][verbosity]") {
     const ScratchFolder folder;
     const std::string scene = scene_to_be_warned_of(folder);
-    Words words = small_render(folder, {});
+    Words words = render_of_16(folder, {});
     words[1] = scene;
-    CHECK_THAT(succeed(words).err, Catch::Contains("raya: warning: "));
+    CHECK_THAT(run_of(words).err, Catch::Contains("raya: warning: "));
     words.emplace_back("-q");
-    const RunOutcome quiet = succeed(words);
+    const RunOutcome quiet = run_of(words);
     CHECK(quiet.out.empty());
     CHECK_THAT(quiet.err, Catch::Contains("raya: warning: "));
     words.emplace_back("-q");
-    const RunOutcome silent = succeed(words);
+    const RunOutcome silent = run_of(words);
     CHECK(silent.out.empty());
     CHECK(silent.err.empty());
     words.emplace_back("--strict");
@@ -172,26 +165,26 @@ TEST_CASE("what there is one of is named in the singular", "[cli][verbosity]") {
 TEST_CASE("-q with -v is refused, in either order", "[cli][verbosity]") {
     const ScratchFolder outputs;
     for (const Words& both : {Words{"-q", "-v"}, Words{"--verbose", "--quiet"}, Words{"-vq"}})
-        check_refused(outputs, small_render(outputs, both), 2, {"--quiet and --verbose: give one of them"});
+        check_refused(outputs, render_of_16(outputs, both), 2, {"--quiet and --verbose: give one of them"});
     check_refused(outputs, {"-v", "devices", "-q"}, 2, {"--quiet and --verbose"});
 }
 
 TEST_CASE("before the command and behind it they say the same", "[cli][verbosity]") {
     for (const Words& words : {Words{"devices", "-v"}, Words{"-v", "devices"}}) {
-        const RunOutcome run = succeed(words);
+        const RunOutcome run = run_of(words);
         CHECK_THAT(run.out, Catch::Contains("platform"));
     }
     const ScratchFolder folder;
-    Words words = small_render(folder, {});
+    Words words = render_of_16(folder, {});
     words.insert(words.begin(), "-q");
-    const RunOutcome run = succeed(words);
+    const RunOutcome run = run_of(words);
     CHECK(run.out.empty());
     CHECK(run.err.empty());
 }
 
 TEST_CASE("verify -q prints what failed and the last line", "[cli][verify][verbosity]") {
     const Words machine = {"verify", "--only", "machine bus", "--lanes", "4", "-q"};
-    const RunOutcome right = succeed(machine);
+    const RunOutcome right = run_of(machine);
     REQUIRE(lines_of(right.out).size() == 1);
     CHECK_THAT(right.out, Catch::Matches(".*: [0-9]+ checks passed, 0 failed, [0-9]+ skipped in [0-9.]+ s\n"));
     const ScratchFolder folder;
@@ -206,10 +199,10 @@ TEST_CASE("verify -q prints what failed and the last line", "[cli][verify][verbo
 TEST_CASE("studies, pages and frames print nothing with -q", "[cli][verbosity]") {
     const ScratchFolder folder;
     std::vector<Words> calls = {{"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
-                                small_render(folder, {"--frames", "1:2", "--turn", "90", "-q"})};
+                                render_of_16(folder, {"--frames", "1:2", "--turn", "90", "-q"})};
     if (RAYA_STUDIES) calls.push_back({"study", "fig7", "--size", "32", "-o", folder / "fig7", "-q"});
     for (const Words& words : calls) {
-        const RunOutcome run = succeed(words);
+        const RunOutcome run = run_of(words);
         INFO(run.told());
         CHECK(run.out.empty());
         CHECK(run.err.empty());

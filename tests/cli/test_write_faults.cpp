@@ -15,11 +15,11 @@ namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
-using Files = std::map<std::string, std::string>;  // contents by name
+using Contents = std::map<std::string, std::string>;  // contents by name
 
 constexpr const char* kOld = "what was there before";
 
-struct Command {
+struct WritingCommand {
     std::string name;
     Words arguments;         // with the folder before each file
     bool replaces = true;    // files that are there
@@ -29,7 +29,7 @@ struct Command {
 };
 
 /// The commands that write files, in `folder`.
-std::vector<Command> commands(const std::string& folder) {
+std::vector<WritingCommand> commands(const std::string& folder) {
     const auto file = [&](const std::string& name) { return folder + "/" + name; };
     const auto render = [&](const Words& more) {
         Words words = {"render", scene_file("centre"), "--size", "16", "--lanes", "4", "--format", "fp32"};
@@ -66,15 +66,15 @@ std::vector<Command> commands(const std::string& folder) {
     };
 }
 
-Files files_of(const fs::path& folder) {
-    Files files;
+Contents files_of(const fs::path& folder) {
+    Contents files;
     for (const auto& entry : fs::directory_iterator(folder))
         files[entry.path().filename().string()] = file_contents(entry.path());
     return files;
 }
 
 /// Whether a file is whole: equal to `expected`, but where it has times.
-bool is_whole(const std::string& name, const std::string& content, const Files& expected) {
+bool is_whole(const std::string& name, const std::string& content, const Contents& expected) {
     if (name.ends_with(".rst")) return content.starts_with("raya");
     if (!expected.contains(name)) return false;
     if (name.ends_with(".json")) return Document::accept(content);
@@ -85,14 +85,14 @@ bool is_whole(const std::string& name, const std::string& content, const Files& 
 struct Faulty {
     RunOutcome run;
     Words calls;  // "write", "open fails", ...
-    Files files;
+    Contents files;
     std::string printed;  // where it is the same each time
 };
 
 /// Runs command `index` in a fresh folder; `fault` as RAYA_WRITE_FAULT has it, `old`: names of files that are there.
-Faulty run_with(std::size_t index, const std::string& fault, const Files& old, const std::string& saved) {
+Faulty run_with(std::size_t index, const std::string& fault, const Contents& old, const std::string& saved) {
     const ScratchFolder folder, notes;
-    const Command command = commands(folder.path().string())[index];
+    const WritingCommand command = commands(folder.path().string())[index];
     for (const auto& [name, content] : old) std::ofstream(folder / name) << kOld;
     if (!command.input.empty()) std::ofstream(folder / command.input) << saved;
     Faulty result;
@@ -140,7 +140,7 @@ TEST_CASE("a call that writes fails once: it is repeated, or the old file stays"
     const std::string saved = file_contents(report);
     const std::vector<std::string> errors = {std::to_string(ENOSPC), std::to_string(EIO), std::to_string(EINTR),
                                              "short"};
-    const std::vector<Command> all = commands("");
+    const std::vector<WritingCommand> all = commands("");
     for (std::size_t index = 0; index < all.size(); ++index) {
         if (all[index].thorough && !thorough()) continue;
         CAPTURE(all[index].name);
@@ -148,7 +148,7 @@ TEST_CASE("a call that writes fails once: it is repeated, or the old file stays"
         INFO(good.run.told());
         REQUIRE(good.run.code == 0);
         REQUIRE(!good.calls.empty());
-        const Files old = all[index].replaces ? good.files : Files{};
+        const Contents old = all[index].replaces ? good.files : Contents{};
         std::size_t calls = 0;
         for (std::size_t call = 1; call <= good.calls.size(); ++call) {
             // Of a run of writes the first, the second and the last, but in the full tests of the commands that are

@@ -193,10 +193,6 @@ TEST_CASE("row 0 is the top row of PNG and EXR", "[image_io]") {
 }
 
 /// The sRGB curve as IEC 61966-2-1 writes it, in the direction that the program does not use.
-double srgb_curve(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
 TEST_CASE("srgb_code rounds the curve to the nearest code", "[image_io]") {
     for (int i = 0; i <= 100'000; ++i) {
         const float linear = static_cast<float>(i) / 100'000;

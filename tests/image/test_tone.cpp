@@ -13,10 +13,6 @@ namespace {
 using Codes = std::array<std::uint8_t, 3>;
 
 /// The sRGB curve as IEC 61966-2-1 writes it, in the direction that the program does not use.
-double srgb_curve(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
 std::vector<Tone> some_tones() {
     std::vector<Tone> tones;
     for (const double exposure : {0.0, -2.0, 1.0, 0.3})

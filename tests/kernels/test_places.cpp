@@ -16,11 +16,11 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kRays = 4'000;
+constexpr std::size_t kPlaceRays = 4'000;
 
-constexpr double kPlaceLimit = 1e-6;    // of the scene's extent, as the distance of a hit
-constexpr double kColourLimit = 1e-7;   // as the words hold it
-constexpr double kMostGrazing = 0.002;  // edges and outlines as for hits, and the sides of checker squares
+constexpr double kPlaceLimit = 1e-6;          // of the scene's extent, as the distance of a hit
+constexpr double kColourLimit = 1e-7;         // as the words hold it
+constexpr double kMostPlacesGrazing = 0.002;  // edges and outlines as for hits, and the sides of checker squares
 
 Found reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -74,7 +74,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         leaving += places.leaving[i];
     }
     CHECK(leaving > agreement.rays / 50);  // both sides are seen
-    CHECK(static_cast<double>(agreement.grazing) <= kMostGrazing * static_cast<double>(agreement.rays));
+    CHECK(static_cast<double>(agreement.grazing) <= kMostPlacesGrazing * static_cast<double>(agreement.rays));
     return agreement.grazing;
 }
 
@@ -101,7 +101,7 @@ void check_starts(const Scene& scene, const ProbedHits& hits, const ProbedPlaces
 
 TEST_CASE("places, normals, sides and colours agree with the reference, with the same bits however they are built",
           "[kernels]") {
-    const std::vector<reference::Ray> rays = random_rays(41, kRays);
+    const std::vector<reference::Ray> rays = random_rays(41, kPlaceRays);
     const std::vector<float> words = ray_words(rays);
     std::map<std::string, ProbedPlaces> first;
     std::string grazing;
@@ -125,7 +125,8 @@ TEST_CASE("places, normals, sides and colours agree with the reference, with the
         }
     }
     grazing.pop_back();
-    fmt::print("Of {} places on each kind of object differ by more than the limits, at edges:{}.\n", kRays, grazing);
+    fmt::print("Of {} places on each kind of object differ by more than the limits, at edges:{}.\n", kPlaceRays,
+               grazing);
 }
 
 }  // namespace raya

@@ -17,19 +17,18 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kRays = 4'000;
+constexpr std::size_t kShadeRays = 4'000;
 constexpr std::uint64_t kSceneSeed = 51, kRaySeed = 52;
 constexpr double kWeight = 0.5;  // of the rays that probe.cl shades
 constexpr std::uint32_t kLastLevel = 8;
 
-constexpr double kPlaceLimit = 1e-6;  // of the scene's extent, as in test_places.cpp
 // A direction turns by twice what the normal does under reflection, by up to 1.5 times under refraction; the normal
 // turns by the error of the place over the radius of curvature, 0.2 or more except near the tips of cones.
 constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
 // A highlight's power multiplies that by its exponent, 100 at most, and by Ks and the lights' weights, 0.1 in all.
 constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
 constexpr double kWeightLimit = 1e-7;
-constexpr double kMostGrazing = 0.01;  // edges as for hits, edges of shadows, tips of cones, critical angles
+constexpr double kMostShadesGrazing = 0.01;  // edges as for hits, edges of shadows, tips of cones, critical angles
 
 void append_ray(Found& found, const ProbedRay& ray) {
     append(found, ray.origin);
@@ -149,7 +148,7 @@ void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps
 
 TEST_CASE("a step of the walk agrees with the reference's formulas", "[kernels]") {
     const Scene scene = mixed_scene(kSceneSeed);
-    const std::vector<reference::Ray> rays = random_rays(kRaySeed, kRays);
+    const std::vector<reference::Ray> rays = random_rays(kRaySeed, kShadeRays);
     const std::vector<int> numbers = object_numbers(scene);
     const std::size_t faces = face_count(scene);
     KernelRunner runner("tests/kernels/probe.cl", variants().front());
@@ -158,7 +157,7 @@ TEST_CASE("a step of the walk agrees with the reference's formulas", "[kernels]"
     const auto find = [&](const reference::Ray& ray) { return reference_step(scene, ray); };
     Agreement agreement{.reach = kPlaceLimit * scene_extent(scene)};
     std::size_t both = 0, through = 0, total = 0;
-    for (std::size_t i = 0; i < kRays; ++i) {
+    for (std::size_t i = 0; i < kShadeRays; ++i) {
         CAPTURE(kSceneSeed, kRaySeed, i, hits.objects[i]);
         const bool hit = hits.objects[i] != kNoObject;
         const Found found = probed_step(steps, i, hit ? numbers[hits.objects[i]] : -1);
@@ -169,23 +168,24 @@ TEST_CASE("a step of the walk agrees with the reference's formulas", "[kernels]"
         through += steps.events(i, at(RAYA_REFRACTED)) && !steps.events(i, at(RAYA_REFLECTED));
         total += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
     }
-    fmt::print("Of {} shaded rays differ by more than the limits, at edges and tips: {}.\n", kRays, agreement.grazing);
-    CHECK(static_cast<double>(agreement.grazing) <= kMostGrazing * kRays);
-    CHECK(both > kRays / 50);     // reflected and refracted
-    CHECK(through > kRays / 50);  // refracted alone
-    CHECK(total > kRays / 50);    // totally reflected: a weight of Ks + T, 0.92 or 0.95
+    fmt::print("Of {} shaded rays differ by more than the limits, at edges and tips: {}.\n", kShadeRays,
+               agreement.grazing);
+    CHECK(static_cast<double>(agreement.grazing) <= kMostShadesGrazing * kShadeRays);
+    CHECK(both > kShadeRays / 50);     // reflected and refracted
+    CHECK(through > kShadeRays / 50);  // refracted alone
+    CHECK(total > kShadeRays / 50);    // totally reflected: a weight of Ks + T, 0.92 or 0.95
 }
 
 TEST_CASE("a step at a deeper level differs in its level alone, and the last level makes no ray", "[kernels]") {
     const Scene scene = mixed_scene(kSceneSeed);
     const std::vector<std::uint32_t> job = job_words(scene);
-    const std::vector<float> rays = ray_words(random_rays(kRaySeed, kRays));
+    const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));
     const std::size_t faces = face_count(scene);
     KernelRunner runner("tests/kernels/probe.cl", variants().front());
     const ProbedSteps first = shade_once(runner, job, rays, 0), deeper = shade_once(runner, job, rays, 5);
     const ProbedSteps last = shade_once(runner, job, rays, kLastLevel);
     CHECK(bits(deeper.numbers) == bits(first.numbers));
-    for (std::size_t i = 0; i < kRays; ++i) {
+    for (std::size_t i = 0; i < kShadeRays; ++i) {
         CAPTURE(kSceneSeed, kRaySeed, i);
         check_state(scene, faces, deeper, i, first.events(i, at(RAYA_SHADED)) != 0, 5);
         CHECK_FALSE(last.walking(i));
@@ -197,7 +197,7 @@ TEST_CASE("a step at a deeper level differs in its level alone, and the last lev
 
 TEST_CASE("a step gives the same bits however it is built", "[kernels]") {
     const std::vector<std::uint32_t> job = job_words(mixed_scene(kSceneSeed));
-    const std::vector<float> rays = ray_words(random_rays(kRaySeed, kRays));
+    const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));
     std::map<std::uint32_t, ProbedSteps> first;  // by level
     for (const Variant& variant : variants()) {
         KernelRunner runner("tests/kernels/probe.cl", variant);

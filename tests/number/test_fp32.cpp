@@ -10,16 +10,16 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kUsualRows = 100'000;
-constexpr std::uint64_t kSeed = 754;
+constexpr std::size_t kFp32Rows = 100'000;
+constexpr std::uint64_t kFp32Seed = 754;
 const NumberFormat kFp32;
 
 void check_fp32(const NumberBuild& build) {
-    const NumberRows rows = RandomOperands(kFp32, kSeed).rows(number_cases(kUsualRows));
+    const NumberRows rows = RandomOperands(kFp32, kFp32Seed).rows(number_cases(kFp32Rows));
     std::vector<std::size_t> operations = kRoundingOperations;
     operations.insert(operations.end(), {kMax, kFloor, kRound, kFromIndex, kNeg, kAbs});
     HostOracle host;
-    CAPTURE(build.name(), kSeed);
+    CAPTURE(build.name(), kFp32Seed);
     CHECK(wrong_numbers(build, rows, expected_by(host, rows, operations)) == "");
 }
 

@@ -12,8 +12,8 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kSeed = 1993;
-constexpr std::size_t kRows = 20'000;
+constexpr std::uint64_t kMutationSeed = 1993;
+constexpr std::size_t kMutationRows = 20'000;
 
 struct Mutation {
     const char* what;
@@ -75,8 +75,8 @@ NumberBuild build_of(const Mutation& mutation) {
 
 TEST_CASE("faults put into the layer are seen", "[number][mutations]") {
     for (const Mutation& mutation : mutations()) {
-        CAPTURE(mutation.what, mutation.patch.file, kSeed);
-        const NumberRows rows = RandomOperands(mutation.format, kSeed).rows(kRows);
+        CAPTURE(mutation.what, mutation.patch.file, kMutationSeed);
+        const NumberRows rows = RandomOperands(mutation.format, kMutationSeed).rows(kMutationRows);
         NumberBuild build = build_of(mutation);
         build.sources.patches.push_back(mutation.patch);
         HostOracle host;

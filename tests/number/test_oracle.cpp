@@ -12,7 +12,7 @@ namespace raya {
 namespace {
 
 constexpr std::size_t kUsualRows = 40'000;
-constexpr std::uint64_t kSeed = 1993;
+constexpr std::uint64_t kOracleSeed = 1993;
 
 struct Size {
     int exponent_bits, fraction_bits;
@@ -41,11 +41,11 @@ std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
 
 TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number][oracle]") {
     for (const NumberFormat& format : tested_formats()) {
-        const NumberRows rows = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
+        const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kUsualRows));
         const std::vector<ExpectedNumbers> expected = expected_by_mpfr(format, rows);
         for (const std::uint32_t lanes : tested_lanes(format)) {
             const NumberBuild build = number_build(format, lanes);
-            CAPTURE(build.name(), kSeed);
+            CAPTURE(build.name(), kOracleSeed);
             CHECK(wrong_numbers(build, rows, expected) == "");
         }
     }
@@ -56,9 +56,9 @@ TEST_CASE("a device that errs in division and square root gives the same bits wh
          {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
         for (const std::uint32_t lanes : {1u, widest_lanes()}) {
             if (lanes == 1 && format.fraction_bits != 15) continue;
-            const NumberRows rows = RandomOperands(format, kSeed).rows(number_cases(kUsualRows));
+            const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kUsualRows));
             const NumberBuild build = refined_build(format, lanes);
-            CAPTURE(build.name(), kSeed);
+            CAPTURE(build.name(), kOracleSeed);
             CHECK(wrong_numbers(build, rows, expected_by_mpfr(format, rows)) == "");
         }
 }

@@ -14,8 +14,8 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kSeed = 5;
-constexpr std::size_t kRows = 8000;
+constexpr std::uint64_t kPowerSeed = 5;
+constexpr std::size_t kPowerRows = 8000;
 constexpr std::array<std::size_t, 3> kFunctions = {kPower, kLog2, kExp2};  // x^n, log2(x), 2^y of a row x, n, y
 
 double result_of(const NumberResults& results, std::size_t operation, std::size_t row) {
@@ -24,13 +24,13 @@ double result_of(const NumberResults& results, std::size_t operation, std::size_
 
 /// x in (0, 4), a third of them crowded below 1; n in [0, 1000), many small; y in [-126, 0].
 NumberRows power_rows(const NumberFormat& format) {
-    SplitMix random(kSeed);
+    SplitMix random(kPowerSeed);
     const double smallest = std::ldexp(1, range_of(format).lowest);
     const auto in_format = [&](double value) { return round_to_format(value, format); };
     NumberRows rows;
     for (const float n : {0.0F, 1.0F, 8.0F}) rows.add(1, n, -n);
     for (const float x : {0.5F, 2.0F, in_format(smallest)}) rows.add(x, 0, -0.5F);
-    while (rows.count() < kRows) {
+    while (rows.count() < kPowerRows) {
         const double crowded = 1 - std::exp2(random.uniform(-format.fraction_bits - 1, 0));
         const double x = rows.count() % 3 == 0 ? crowded : std::exp2(random.uniform(range_of(format).lowest, 2));
         const double n = std::exp2(random.uniform(-3, 10));
@@ -108,7 +108,7 @@ void check_row(const PowerBounds& bounds, double x, double n, double y, const Nu
 TEST_CASE("powers keep the errors that they state, the same bits for all lanes", "[number][power]") {
     for (const NumberFormat& format : power_formats()) {
         const NumberRows rows = power_rows(format);
-        CAPTURE(format_name(format), kSeed);
+        CAPTURE(format_name(format), kPowerSeed);
         const NumberResults results = run_numbers(number_build(format), rows, true);
         const NumberResults single = run_numbers(number_build(format, 1), rows, true);
         for (const std::size_t function : kFunctions) CHECK(single[function] == results[function]);

@@ -70,7 +70,7 @@ TEST_CASE("a rank has the words of its own nodes, as one rank has them", "[ranks
 
 TEST_CASE("of the torus a rank's device holds its part of the nodes, with an inbox more for each link from elsewhere",
           "[ranks]") {
-    const TorusSettings settings = settings_of({.nodes = {4, 4, 4}, .queue = 400});
+    const TorusSettings settings = settings_of(TorusCase{.nodes = {4, 4, 4}, .queue = 400});
     const Scene scene = project_scene("spheres");
     const std::uint64_t all = bytes_of_ranks<TorusRenderer>(1, scene, settings).front();
     for (const std::uint32_t count : {2u, 4u, 8u}) {
@@ -86,7 +86,7 @@ TEST_CASE("of the torus a rank's device holds its part of the nodes, with an inb
 }
 
 TEST_CASE("of the ring a rank's device holds the scene and its own PEs' pixels", "[ranks]") {
-    RingSettings settings = settings_of({.width = 256, .height = 256, .pes = 64, .offset = 0});
+    RingSettings settings = settings_of(RingCase{.width = 256, .height = 256, .pes = 64, .offset = 0});
     settings.antialias.method = AntialiasMethod::kFilter;
     const Scene scene = project_scene("spheres");
     Session session(choose_device(""));

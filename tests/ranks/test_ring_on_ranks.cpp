@@ -73,7 +73,7 @@ TEST_CASE("one image, and one load of each PE, on any number of ranks", "[ranks]
     std::uint32_t cases = 0, uneven = 0;
     for (std::uint32_t i = 0; i < quick_cases(24, 120); ++i) {
         const Scene& scene = scenes[i % scenes.size()];
-        RingSettings settings = settings_of({.format = i % 3 ? "fp32" : "spa22"});
+        RingSettings settings = settings_of(RingCase{.format = i % 3 ? "fp32" : "spa22"});
         settings.mapping = random_mapping(random);
         settings.antialias = random_antialias(random);
         settings.keep_costs = true;
@@ -97,7 +97,7 @@ TEST_CASE("one image, and one load of each PE, on any number of ranks", "[ranks]
 }
 
 TEST_CASE("more ranks than PEs are refused with both numbers", "[ranks]") {
-    RingSettings settings = settings_of({.width = 8, .height = 4, .pes = 3, .offset = 0});
+    RingSettings settings = settings_of(RingCase{.width = 8, .height = 4, .pes = 3, .offset = 0});
     CHECK_THROWS_WITH(render_on(4, project_scene("spheres"), settings),
                       Catch::Contains("4 ranks for 3 PEs") && Catch::Contains("start 3 ranks or fewer"));
 }

@@ -9,8 +9,6 @@
 namespace raya {
 namespace {
 
-Document read(const TraceFile& trace) { return Document::parse(trace.finish(false)); }
-
 CommandRecord command(const std::string& label, std::uint64_t start, std::uint64_t end) {
     return {.label = label,
             .kind = "copy",
@@ -46,7 +44,7 @@ TEST_CASE("steps of the host lie in each other as their scopes did", "[report]")
     CHECK(steps[2].depth == 2);
     TraceFile trace(100);
     add_host_steps(trace, steps, begin);
-    const TraceSchema schema(read(trace));
+    const TraceSchema schema(json_of(trace));
     CHECK(schema.faults() == std::vector<std::string>{});
     const auto slices = schema.slices_of(kTraceHost);
     REQUIRE(slices.size() == 4);
@@ -68,7 +66,7 @@ TEST_CASE("a command's slice has its times, its bytes and its launch", "[report]
     profile.add(command("move", 3000, 3000));
     TraceFile trace(100);
     add_device_commands(trace, "a device", profile, {}, 250);
-    const Document json = read(trace), slice = slice_named(json, "trace"), copy = slice_named(json, "move");
+    const Document json = json_of(trace), slice = slice_named(json, "trace"), copy = slice_named(json, "move");
     CHECK(TraceSchema(json).faults().empty());
     CHECK(slice["ts"] == 1.0);
     CHECK(slice["dur"] == 1.001);
@@ -85,7 +83,7 @@ TEST_CASE("another clock is moved to the host's, and what comes too early is kep
     profile.add(command("later", 200, 260));
     TraceFile trace(100);
     add_device_commands(trace, "a device", profile, {.same_clock = false, .offset_ns = 900, .uncertainty_ns = 5}, 1000);
-    const Document json = read(trace);
+    const Document json = json_of(trace);
     CHECK(TraceSchema(json).faults().empty());
     CHECK(slice_named(json, "later")["ts"] == 0.1);
     CHECK(slice_named(json, "later")["dur"] == 0.06);
@@ -102,14 +100,14 @@ TEST_CASE("commands that overlap, or end before they begin, still make a trace",
         for (int i = 0; i < 40; ++i) profile.add(command("c", random.next() % 1000, random.next() % 1000));
         TraceFile trace(1000);
         add_device_commands(trace, "a device", profile, {}, random.next() % 500);
-        const TraceSchema schema(read(trace));
+        const TraceSchema schema(json_of(trace));
         CHECK(schema.faults() == std::vector<std::string>{});
         CHECK(schema.slices_of(kTraceDevice).size() == 40);
     }
     const Profile untimed(false);
     TraceFile trace(10);
     add_device_commands(trace, "a device", untimed, {}, 0);
-    CHECK(read(trace)["otherData"]["device"].get<std::string>().starts_with("left out"));
+    CHECK(json_of(trace)["otherData"]["device"].get<std::string>().starts_with("left out"));
 }
 
 }  // namespace raya

@@ -11,8 +11,6 @@
 namespace raya {
 namespace {
 
-Document read(const TraceFile& trace) { return Document::parse(trace.finish(false)); }
-
 // Slices within a slice, within a slice, ...
 void add_slices(TraceFile& trace, TraceTrack track, SplitMix& random, std::uint64_t start, std::uint64_t end,
                 int depth) {
@@ -53,7 +51,7 @@ TEST_CASE("what the writer writes keeps the rules", "[report]") {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         CAPTURE(seed);
         const TraceFile trace = random_trace(seed, 1'000'000);
-        const Document json = read(trace);
+        const Document json = json_of(trace);
         const TraceSchema schema(json);
         CHECK(schema.faults() == std::vector<std::string>{});
         CHECK(schema.flows() >= 5);
@@ -68,7 +66,7 @@ TEST_CASE("events beyond the limit are left out and counted, flows as a whole", 
         const std::size_t all = random_trace(seed, 1'000'000).events(), most = seed % (all + 2);
         CAPTURE(seed, all, most);
         const TraceFile trace = random_trace(seed, most);
-        const Document json = read(trace);
+        const Document json = json_of(trace);
         CHECK(trace.events() <= most);
         CHECK(trace.events() + trace.left_out() == all);
         CHECK(trace.events() + 1 >= std::min(most, all));  // a flow takes two
@@ -153,7 +151,7 @@ TEST_CASE("the schema finds each broken rule", "[report]") {
     };
     for (const Break& b : breaks) {
         CAPTURE(b.fault);
-        Document json = read(random_trace(3, 1'000'000));
+        Document json = json_of(random_trace(3, 1'000'000));
         REQUIRE(TraceSchema(json).faults().empty());
         b.apply(json["traceEvents"]);
         std::string all;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/report/trace_file.hpp"
 #include "tests/document.hpp"
 
 namespace raya {
@@ -189,5 +190,7 @@ class TraceSchema {
     std::map<Track, std::vector<Slice>> slices_;
     std::map<std::int64_t, End> begins_, ends_;
 };
+
+inline Document json_of(const TraceFile& trace) { return Document::parse(trace.finish(false)); }
 
 }  // namespace raya

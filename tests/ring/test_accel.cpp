@@ -13,7 +13,7 @@ namespace raya {
 namespace {
 
 // What must not depend on the grid: the image and everything that is counted but tests and ways through voxels.
-std::string answer_of(const RingResult& r) { return one_image(r.image, r.all.events); }
+std::string image_and_events(const RingResult& r) { return one_image(r.image, r.all.events); }
 
 RingResult render_with(Session& session, const Scene& scene, const RingCase& c, const Accel& accel) {
     RingSettings settings = raya::settings_of(c);
@@ -41,11 +41,11 @@ TEST_CASE("a grid or a tree changes no bit of the image, whatever its voxels and
     if (!thorough() && name != (format == "fp32" ? "polygons" : "cones")) return;
     const Scene scene = project_scene(name);
     const RingCase c{.width = 32, .height = 24, .pes = 8, .format = format};
-    const std::string expected = answer_of(render_with(session, scene, c, {}));
+    const std::string expected = image_and_events(render_with(session, scene, c, {}));
     for (const Accel& accel : {bvh, automatic_grid, cut(1, 1, 1), cut(7, 3, 5), cut(1, 40, 2), cut(24, 24, 24)}) {
         CAPTURE(name, format, accel_text(accel));
         const RingResult result = render_with(session, scene, c, accel);
-        CHECK(answer_of(result) == expected);
+        CHECK(image_and_events(result) == expected);
         CHECK(result.all.events[RAYA_WALKS] > 0);
         if (accel.kind == AccelKind::kGrid) CHECK(result.all.events[RAYA_STEPS] >= result.all.events[RAYA_WALKS]);
     }
@@ -62,10 +62,10 @@ TEST_CASE("scenes of all kinds of objects look alike with a grid or a tree, in c
         const auto side = [&] { return 1 + static_cast<std::uint32_t>(random.next() % 9); };
         const std::uint32_t a = side(), b = side(), d = side();
         CAPTURE(seed, format, a, b, d);
-        const std::string expected = answer_of(render_with(session, scene, c, {}));
-        CHECK(answer_of(render_with(session, scene, c, cut(a, b, d))) == expected);
-        CHECK(answer_of(render_with(session, scene, c, automatic_grid)) == expected);
-        CHECK(answer_of(render_with(session, scene, c, bvh)) == expected);
+        const std::string expected = image_and_events(render_with(session, scene, c, {}));
+        CHECK(image_and_events(render_with(session, scene, c, cut(a, b, d))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, automatic_grid)) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
@@ -119,7 +119,8 @@ TEST_CASE("crowds of objects of all sizes look alike with a tree", "[ring][accel
         if (seed % 3 == 0) scene.view.from = scene.view.at - Vec3(0, 0, 8);  // along an axis
         const RingCase c{.width = 24, .height = 20, .pes = 6, .bounces = 3, .format = format};
         CAPTURE(seed, format);
-        CHECK(answer_of(render_with(session, scene, c, bvh)) == answer_of(render_with(session, scene, c, {})));
+        CHECK(image_and_events(render_with(session, scene, c, bvh)) ==
+              image_and_events(render_with(session, scene, c, {})));
     }
 }
 
@@ -156,12 +157,12 @@ TEST_CASE("rays of how many trees and lights wait together changes no bit and no
     const RingResult plain = render_with(session, scene, c, {});
     c.more_options = {"-DRAYA_TREES=1", "-DRAYA_BEAMS=1"};
     const RingResult one = render_with(session, scene, c, cut(6, 5, 4));
-    CHECK(answer_of(one) == answer_of(plain));
+    CHECK(image_and_events(one) == image_and_events(plain));
     for (const auto& [trees, beams] : quick(1, {std::pair{"3", "2"}, {"2", "8"}, {"8", "7"}})) {
         c.more_options = {std::string("-DRAYA_TREES=") + trees, std::string("-DRAYA_BEAMS=") + beams};
         CAPTURE(format, c.more_options);
         const RingResult many = render_with(session, scene, c, cut(6, 5, 4));
-        CHECK(answer_of(many) == answer_of(plain));
+        CHECK(image_and_events(many) == image_and_events(plain));
         CHECK(many.all.events == one.all.events);
     }
 }
@@ -193,12 +194,12 @@ TEST_CASE("of objects at equal distances the lowest number is hit, in whichever 
     for (const std::uint64_t seed : quick_of(1, kRichScenes)) {
         const Scene scene = doubled_scene(seed);
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
-        const std::string expected = answer_of(render_with(session, scene, c, {}));
+        const std::string expected = image_and_events(render_with(session, scene, c, {}));
         CAPTURE(seed, format);
-        CHECK(answer_of(render_with(session, scene, c, cut(1, 1, 1))) == expected);
-        CHECK(answer_of(render_with(session, scene, c, cut(8, 5, 7))) == expected);
-        CHECK(answer_of(render_with(session, scene, c, automatic_grid)) == expected);
-        CHECK(answer_of(render_with(session, scene, c, bvh)) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, cut(1, 1, 1))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, cut(8, 5, 7))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, automatic_grid)) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
@@ -227,13 +228,13 @@ TEST_CASE("of a plane, a polygon held apart and listed ones at equal distances t
     for (const bool plane : {true, false}) {
         if (!plane) scene.planes.clear();
         const RingCase c{.width = 32, .height = 24, .pes = 8};
-        const std::string expected = answer_of(render_with(session, scene, c, {}));
+        const std::string expected = image_and_events(render_with(session, scene, c, {}));
         const RingResult grid = render_with(session, scene, c, automatic_grid);
         CAPTURE(plane);
-        CHECK(answer_of(grid) == expected);
+        CHECK(image_and_events(grid) == expected);
         CHECK(grid.accel->apart == 1);
-        CHECK(answer_of(render_with(session, scene, c, cut(9, 9, 3))) == expected);
-        CHECK(answer_of(render_with(session, scene, c, bvh)) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, cut(9, 9, 3))) == expected);
+        CHECK(image_and_events(render_with(session, scene, c, bvh)) == expected);
     }
 }
 
@@ -261,7 +262,7 @@ TEST_CASE("a hit where a ray ends is none, in whichever voxel it is found", "[ri
     CHECK(plain.all.events[RAYA_LIT] > 0);
     for (const Accel& accel : {bvh, automatic_grid, cut(5, 6, 7), cut(3, 2, 16)}) {
         CAPTURE(format, accel_text(accel));
-        CHECK(answer_of(render_with(session, scene, c, accel)) == answer_of(plain));
+        CHECK(image_and_events(render_with(session, scene, c, accel)) == image_and_events(plain));
     }
 }
 
@@ -272,8 +273,8 @@ TEST_CASE("supersampling through a grid or a tree gives the same pixels", "[ring
     const Scene scene = project_scene("centre");
     const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, automatic_grid);
     CHECK(plain.recomputed > 0);
-    CHECK(answer_of(grid) == answer_of(plain));
-    CHECK(answer_of(render_with(session, scene, c, bvh)) == answer_of(plain));
+    CHECK(image_and_events(grid) == image_and_events(plain));
+    CHECK(image_and_events(render_with(session, scene, c, bvh)) == image_and_events(plain));
 }
 
 TEST_CASE("a grid or a tree saves nearly all tests of many small spheres", "[ring][accel]") {
@@ -281,13 +282,13 @@ TEST_CASE("a grid or a tree saves nearly all tests of many small spheres", "[rin
     const Scene scene = generate_balls(3);
     const RingCase c{.width = 48, .height = 48, .pes = 48};
     const RingResult plain = render_with(session, scene, c, {}), grid = render_with(session, scene, c, automatic_grid);
-    CHECK(answer_of(grid) == answer_of(plain));
+    CHECK(image_and_events(grid) == image_and_events(plain));
     REQUIRE(grid.accel);
     CHECK(grid.accel->apart == 1);  // the ground
     CHECK(tests_of(plain.all.events) > 20 * tests_of(grid.all.events));
     CHECK(grid.pe_memory.job_words == plain.pe_memory.job_words + grid.accel->words);
     const RingResult tree = render_with(session, scene, c, bvh);
-    CHECK(answer_of(tree) == answer_of(plain));
+    CHECK(image_and_events(tree) == image_and_events(plain));
     CHECK(tests_of(plain.all.events) > 20 * tests_of(tree.all.events));
     CHECK(tree.pe_memory.job_words == plain.pe_memory.job_words + tree.accel->words);
 }
@@ -308,7 +309,7 @@ TEST_CASE("a fault in the walk down a tree is seen", "[ring][accel][faults]") {
         std::string all;
         for (const Scene& scene : scenes) {
             const RingResult result = RingRenderer(session, scene, settings).render();
-            all += answer_of(result) + std::to_string(tests_of(result.all.events)) + " ";
+            all += image_and_events(result) + std::to_string(tests_of(result.all.events)) + " ";
         }
         return all;
     };

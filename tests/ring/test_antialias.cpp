@@ -85,7 +85,7 @@ class PlainImages {
     std::map<std::tuple<std::string, Sampling, std::uint32_t, std::uint32_t, double>, RingResult> images_;
 };
 
-RingResult render_case(Session& session, RingCase c) {
+RingResult render_grid(Session& session, RingCase c) {
     c.keep_costs = true;
     return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsOfUnit), settings_of(c)).render();
 }
@@ -168,7 +168,7 @@ TEST_CASE("the ring's filter is the filter of the whole image", "[ring][antialia
             RingCase c = random_case(random, format);
             c.antialias.method = AntialiasMethod::kFilter;
             CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold);
-            const RingResult result = render_case(session, c), &expected = plain.of(c);
+            const RingResult result = render_grid(session, c), &expected = plain.of(c);
             CHECK(unlike_values(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
             CHECK(result.all.events == expected.all.events);
             CHECK(result.cost().cycles == expected.cost().cycles);
@@ -191,7 +191,7 @@ TEST_CASE("supersampling takes the mean of five points where a neighbour differs
             c.antialias = random_supersampling(random);
             CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold, c.sampling == Sampling::kCorners);
             CAPTURE(c.antialias.threshold, c.antialias.points);
-            const RingResult result = render_case(session, c);
+            const RingResult result = render_grid(session, c);
             check_supersampled(result, plain.of(c), plain.fine(c), c);
             const std::size_t size = std::size_t{c.width} * c.height;
             if (c.antialias.threshold == 0 && size > 1) CHECK(result.recomputed == size);

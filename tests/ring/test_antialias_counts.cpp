@@ -20,16 +20,16 @@ RingResult render_case(Session& session, RingCase c) {
 }
 
 /// All that must not depend on PEs, mapping, lanes or groups.
-struct Answer {
+struct AntialiasAnswer {
     std::string image, mask;
     std::vector<EventCounts> events;  // of each phase
     std::vector<std::vector<std::uint64_t>> cost;
     std::uint64_t recomputed;
-    bool operator==(const Answer&) const = default;
+    bool operator==(const AntialiasAnswer&) const = default;
 };
 
-Answer answer_of(const RingResult& result) {
-    Answer answer{pixel_hash(result.image), pixel_hash(result.mask), {}, {}, result.recomputed};
+AntialiasAnswer antialias_answer(const RingResult& result) {
+    AntialiasAnswer answer{pixel_hash(result.image), pixel_hash(result.mask), {}, {}, result.recomputed};
     for (const Phase& phase : result.phases) {
         answer.events.push_back(phase.events);
         answer.cost.push_back(phase.cost().cycles);
@@ -94,11 +94,11 @@ TEST_CASE("lanes and group size change no bit, mark or count of anti-aliasing", 
     Session session(choose_device(""));
     for (const auto& [format, choices] : formats)
         for (const Antialias& antialias : {kFilter, kSupersample}) {
-            std::vector<Answer> answers;
+            std::vector<AntialiasAnswer> answers;
             for (const auto& [lanes, group] : choices) {
                 const RingCase c{.lanes = lanes, .group = group, .format = format, .antialias = antialias};
                 const RingResult result = render_case(session, c);
-                answers.push_back(answer_of(result));
+                answers.push_back(antialias_answer(result));
                 CAPTURE(format, antialias_name(antialias.method), lanes, group);
                 CHECK(answers.back() == answers.front());
                 for (const Phase& phase : result.phases) check_phase(phase, settings_of(c).mapping);
@@ -113,7 +113,7 @@ TEST_CASE("PEs, offset and fold change no bit, mark or count of anti-aliasing", 
     const Antialias antialias = GENERATE(kFilter, kSupersample);
     RingCase c{.width = 30, .height = 22, .pes = 1, .offset = 0, .format = "spa22", .antialias = antialias};
     const RingResult one = render_case(session, c);
-    const Answer expected = answer_of(one);
+    const AntialiasAnswer expected = antialias_answer(one);
     CHECK(one.communication.rotations == 0);
     for (const std::uint32_t pes : {1u, 2u, 5u, 15u, 30u, 31u, 60u, 97u, 330u, 659u, 660u}) {
         c.pes = pes;
@@ -121,7 +121,7 @@ TEST_CASE("PEs, offset and fold change no bit, mark or count of anti-aliasing", 
         c.fold = random.next() % 2 ? Fold::kBlock : Fold::kCyclic;
         CAPTURE(kSeed, antialias_name(antialias.method), c.pes, c.offset, c.fold);
         const RingResult result = render_case(session, c);
-        CHECK(answer_of(result) == expected);
+        CHECK(antialias_answer(result) == expected);
         for (const Phase& phase : result.phases) check_phase(phase, settings_of(c).mapping);
         check_sums(result);
         check_words(result, c);
@@ -148,7 +148,7 @@ TEST_CASE("a second anti-aliased render of the same renderer gives the same answ
         RingRenderer renderer(session, grid_scene(c.height, c.sampling, 40), settings_of(c));
         const RingResult first = renderer.render(), second = renderer.render();
         CAPTURE(antialias_name(antialias.method));
-        CHECK(answer_of(first) == answer_of(second));
+        CHECK(antialias_answer(first) == antialias_answer(second));
         CHECK(first.all.load.per_pe == second.all.load.per_pe);
         CHECK(first.communication.rotations == second.communication.rotations);
         CHECK(first.communication.rotation_words == second.communication.rotation_words);
@@ -190,7 +190,7 @@ TEST_CASE("where a PE's memory is short pixels go round in bands, with the same 
         CHECK(share == largest_share(settings_of(c).mapping));
         CHECK(band < share);
         CHECK(banded.pe_memory.bytes() <= 32 * 1024);
-        CHECK(answer_of(banded) == answer_of(whole));
+        CHECK(antialias_answer(banded) == antialias_answer(whole));
         CHECK(banded.communication.rotations == whole.communication.rotations * ((share + band - 1) / band));
         check_words(banded, c);
         check_words(whole, c);

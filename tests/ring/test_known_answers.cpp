@@ -6,7 +6,7 @@
 namespace raya {
 namespace {
 
-Scene empty_scene() {
+Scene dark_scene() {
     Scene scene;
     scene.name = "known answer";
     scene.view.from = {0, 0, 0};
@@ -22,7 +22,7 @@ float pixel(const RingResult& r, int row, int column, int channel) {
 }  // namespace
 
 TEST_CASE("a sphere of Kd = 1 without lights is as bright as the ambient light", "[ring]") {
-    Scene scene = empty_scene();
+    Scene scene = dark_scene();
     scene.background = {1, 1, 1};
     scene.surfaces = {{.colour = {1, 1, 1}, .diffuse = 1}};
     scene.spheres = {{{0, 0, 5}, 1, 0}, {{1, 1, 4}, 0.5, 0}};
@@ -32,7 +32,7 @@ TEST_CASE("a sphere of Kd = 1 without lights is as bright as the ambient light",
 }
 
 TEST_CASE("a perfect mirror in a uniform surrounding cannot be seen", "[ring]") {
-    Scene scene = empty_scene();
+    Scene scene = dark_scene();
     scene.background = {0.25, 0.5, 0.75};
     scene.surfaces = {{.diffuse = 0, .specular = 1}, {.diffuse = 0, .transmittance = 1, .refraction = 1.5}};
     scene.spheres = {{{0, 0, 5}, 1, 0}, {{-1.5, 0, 5}, 0.7, 1}};
@@ -44,7 +44,7 @@ TEST_CASE("a perfect mirror in a uniform surrounding cannot be seen", "[ring]") 
 }
 
 TEST_CASE("between two mirrors the light is a geometric series, one term a bounce", "[ring]") {
-    Scene scene = empty_scene();
+    Scene scene = dark_scene();
     scene.view.from = {0, 0, 0.5};
     scene.view.at = {0, 0, 1};
     scene.surfaces = {{.colour = {1, 0.5, 0.25}, .diffuse = 0.5, .specular = 0.5}};
@@ -61,7 +61,7 @@ TEST_CASE("between two mirrors the light is a geometric series, one term a bounc
 
 TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and has no light at its rim",
           "[ring]") {
-    Scene scene = empty_scene();
+    Scene scene = dark_scene();
     scene.lights = {{{0, 0, 0}, Colour(1, 1, 1)}};
     scene.surfaces = {{.colour = {1, 0.5, 0}, .diffuse = 0.4, .specular = 0.3, .shine = 20}};
     scene.spheres = {{{0, 0, 5}, 1, 0}};
@@ -79,7 +79,7 @@ TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre
 }
 
 TEST_CASE("glass of index 1 cannot be seen, and a ray through the centre of a glass sphere goes straight", "[ring]") {
-    Scene scene = empty_scene();
+    Scene scene = dark_scene();
     scene.surfaces = {{.diffuse = 0, .transmittance = 1, .refraction = 1},
                       {.colour = {0.2, 0.6, 1}, .checker = Checker{{1, 0, 0}, {0, 0, 1}, 0.37}}};
     scene.planes = {{{0, 0, 1}, 9, 1}};

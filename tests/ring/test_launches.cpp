@@ -12,14 +12,14 @@
 namespace raya {
 namespace {
 
-struct Answer {
+struct LoadsAnswer {
     std::string hash;
     EventCounts events;
     std::vector<std::uint64_t> loads, costs;
-    bool operator==(const Answer&) const = default;
+    bool operator==(const LoadsAnswer&) const = default;
 };
 
-Answer answer_of(const RingResult& r) {
+LoadsAnswer loads_answer(const RingResult& r) {
     return {pixel_hash(r.image), r.all.events, r.all.load.per_pe, r.cost().cycles};
 }
 
@@ -67,7 +67,7 @@ TEST_CASE("however little a launch may do, image, counts and costs are the same"
         const RingResult cut = RingRenderer(session, scene, settings).render();
         CAPTURE(settings.work_per_launch);
         more += launches_of(cut) > launches_of(whole);
-        CHECK(answer_of(cut) == answer_of(whole));
+        CHECK(loads_answer(cut) == loads_answer(whole));
     }
     CHECK(2 * more > cases);
 }
@@ -80,7 +80,7 @@ TEST_CASE("a launch may do a turn of its loop and no more, and still all comes t
     const RingResult whole = RingRenderer(session, scene, settings).render();
     settings.work_per_launch = 1;
     const RingResult cut = RingRenderer(session, scene, settings).render();
-    CHECK(answer_of(cut) == answer_of(whole));
+    CHECK(loads_answer(cut) == loads_answer(whole));
     CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one for the pixels of a lane
 }
 
@@ -104,14 +104,14 @@ TEST_CASE("launches report progress, which never goes back, as soon as a pixel a
     const RingResult second = sliced.render(report);
     CHECK(std::is_sorted(reported.begin(), reported.end()));
     CHECK(reported.back() == 1);
-    CHECK(answer_of(second) == answer_of(first));
+    CHECK(loads_answer(second) == loads_answer(first));
     CHECK(launches_of(second) == reported.size());
     CHECK(reported.size() > 4);
 }
 
-bool is_seen(Session& session, const Scene& scene, const RingSettings& settings, const Answer& right) {
+bool is_seen(Session& session, const Scene& scene, const RingSettings& settings, const LoadsAnswer& right) {
     try {
-        return !(answer_of(RingRenderer(session, scene, settings).render()) == right);
+        return !(loads_answer(RingRenderer(session, scene, settings).render()) == right);
     } catch (const DeviceError&) {  // pixels are counted
         return true;
     }
@@ -135,7 +135,7 @@ TEST_CASE("faults in what launches keep are seen", "[ring][faults]") {
     c.antialias.method = AntialiasMethod::kSupersample;
     RingSettings settings = settings_of(c);
     settings.work_per_launch = 300;
-    const Answer right = answer_of(RingRenderer(session, scene, settings).render());
+    const LoadsAnswer right = loads_answer(RingRenderer(session, scene, settings).render());
     for (const SourcePatch& fault : faults) {
         CAPTURE(fault.file, fault.find);
         settings.kernels.sources.patches = {fault};
@@ -173,11 +173,11 @@ TEST_CASE("a launch whose loops are cut is repeated with half the work, and noth
     settings.kernels.sources.patches = cut_launches();
     session.launch_limit(kTracePass) = session.launch_limit(kSupersamplePass) = 300;
     const RingResult first = RingRenderer(session, scene, settings).render();
-    CHECK(answer_of(first) == answer_of(whole));
+    CHECK(loads_answer(first) == loads_answer(whole));
     CHECK(session.launch_limit(kTracePass) == 37);
     CHECK(session.launch_limit(kSupersamplePass) == (method == AntialiasMethod::kNone ? 300 : 37));
     const RingResult second = RingRenderer(session, scene, settings).render();
-    CHECK(answer_of(second) == answer_of(whole));
+    CHECK(loads_answer(second) == loads_answer(whole));
     CHECK(launches_of(second) == launches_of(first) - (method == AntialiasMethod::kNone ? 3 : 6));  // 300, 150, 75
 }
 

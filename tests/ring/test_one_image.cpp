@@ -144,7 +144,7 @@ TEST_CASE("a PE too small for its share is gathered block by block, with the sam
 
 TEST_CASE("a second render of the same renderer gives the same answer", "[ring]") {
     Session session(choose_device(""));
-    RingRenderer renderer(session, project_scene("cones"), settings_of({}));
+    RingRenderer renderer(session, project_scene("cones"), settings_of(RingCase{}));
     const RingResult first = renderer.render(), second = renderer.render();
     CHECK(answer_of(first) == answer_of(second));
     CHECK(second.communication.broadcasts == 1);

@@ -18,17 +18,13 @@
 #include "host/scene/polygon.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/paths.h"
+#include "tests/scene/spd_folder.hpp"
 
 using namespace raya;
 
 namespace {
 
 double gap(const Sphere& a, const Sphere& b) { return (a.centre - b.centre).length() - a.radius - b.radius; }
-
-std::filesystem::path spd_folder() {
-    const char* given = std::getenv("RAYA_SPD_DIR");
-    return given ? given : RAYA_SOURCE_DIR "/../shared/spd";
-}
 
 using Point = std::tuple<double, double, double>;
 

@@ -8,24 +8,20 @@
 
 #include "host/scene/nff.hpp"
 #include "tests/paths.h"
+#include "tests/scene/spd_folder.hpp"
 
 using namespace raya;
 
 namespace {
 
-const std::string kView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 0.5\nresolution 320 200\n";
+const std::string kPlainView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 0.5\nresolution 320 200\n";
 
-Scene scene_of(const std::string& entities) { return parse_nff(kView + entities, "folder/t.nff"); }
+Scene scene_of(const std::string& entities) { return parse_nff(kPlainView + entities, "folder/t.nff"); }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
     for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
         text.replace(at, from.size(), to);
     return text;
-}
-
-std::filesystem::path spd_folder() {
-    const char* given = std::getenv("RAYA_SPD_DIR");
-    return given ? given : RAYA_SOURCE_DIR "/../shared/spd";
 }
 
 }  // namespace
@@ -54,10 +50,10 @@ TEST_CASE("white space, comments and line ends do not matter", "[nff]") {
           plain);
     CHECK(scene_of("# two\n#rayas \xC3\xA9\nl 1 2 3 # end\n1 1 1#\nc 0 0 0 1 # base\n0 0 2 0.5\n" +
                    entities.substr(entities.find('p'))) == plain);
-    CHECK(parse_nff(replaced(kView + entities, "\n", "\r\n"), "t.nff") == plain);
-    CHECK(parse_nff(replaced(kView + entities, "\n", "\r"), "t.nff") == plain);
-    CHECK(parse_nff("\xEF\xBB\xBF" + kView + entities, "t.nff") == plain);
-    CHECK(parse_nff(entities + kView, "t.nff") == plain);
+    CHECK(parse_nff(replaced(kPlainView + entities, "\n", "\r\n"), "t.nff") == plain);
+    CHECK(parse_nff(replaced(kPlainView + entities, "\n", "\r"), "t.nff") == plain);
+    CHECK(parse_nff("\xEF\xBB\xBF" + kPlainView + entities, "t.nff") == plain);
+    CHECK(parse_nff(entities + kPlainView, "t.nff") == plain);
     CHECK(scene_of(replaced(entities, " 1 ", " +1.0e0 ")) == plain);
 }
 

@@ -11,8 +11,8 @@ using namespace raya;
 
 namespace {
 
-const std::string kView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 0.5\nresolution 320 200\n";
-const std::string kSphere = "s 0 0 0 1\n";
+const std::string kShortView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 0.5\nresolution 320 200\n";
+const std::string kOneSphere = "s 0 0 0 1\n";
 const std::string kTriangle = "p 3 0 0 0 1 0 0 0 1 0\n";
 const std::string kChecker = "#raya checker 1 1 1 0 0 0 1\n";
 
@@ -40,13 +40,13 @@ void check(const std::vector<Row>& rows) {
 
 /// Rows whose text follows a good view and sphere: it starts on line 9.
 void check_entities(std::vector<Row> rows) {
-    for (Row& row : rows) row.text = kView + kSphere + row.text;
+    for (Row& row : rows) row.text = kShortView + kOneSphere + row.text;
     check(rows);
 }
 
-/// A view with one line replaced; lines as in kView.
+/// A view with one line replaced; lines as in kShortView.
 std::string view_with(const std::string& old_line, const std::string& new_line) {
-    std::string text = kView + kSphere;
+    std::string text = kShortView + kOneSphere;
     return text.replace(text.find(old_line), old_line.size(), new_line);
 }
 
@@ -64,9 +64,9 @@ TEST_CASE("refused: files that are something else", "[nff]") {
 }
 
 TEST_CASE("refused: scenes that show nothing", "[nff]") {
-    check({{kSphere, "2: no 'v': the file must say from where to look"},
-           {kView, "8: no object: nothing could be seen"},
-           {kView + "f 1 1 1 1 0 0 0 1\nl 1 1 1\n", "10: no object"}});
+    check({{kOneSphere, "2: no 'v': the file must say from where to look"},
+           {kShortView, "8: no object: nothing could be seen"},
+           {kShortView + "f 1 1 1 1 0 0 0 1\nl 1 1 1\n", "10: no object"}});
 }
 
 TEST_CASE("refused: numbers", "[nff]") {
@@ -106,7 +106,7 @@ TEST_CASE("refused: entities that are cut short or followed by something", "[nff
 
 TEST_CASE("refused: viewpoints", "[nff]") {
     const char* side = "must be a whole number from 1 to 16384";
-    check({{kView + kView + kSphere, "8: a second 'v'"},
+    check({{kShortView + kShortView + kOneSphere, "8: a second 'v'"},
            {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows, but still missing: angle"},
            {"v\nfrom 0 0 1\nat 0 0 0",
             "3: 'v' is incomplete: the file ends, but still missing: up angle hither resolution"},
@@ -144,7 +144,7 @@ TEST_CASE("refused: colours and surfaces", "[nff]") {
                     {"f 1 1 1 1 0 -1 0 1", "9: Shine is -1: must not be negative"},
                     {"f 1 1 1 1 0 0 0.5 0", "9: the index of refraction is 0: must be positive where T > 0"},
                     {"f 1 1 1 1 0 0 0.5 -1.5", "9: the index of refraction is -1.5"}});
-    CHECK(refusal(kView + "f 2 2 2 1 0 0 0 -1\n" + kSphere) == "accepted");
+    CHECK(refusal(kShortView + "f 2 2 2 1 0 0 0 -1\n" + kOneSphere) == "accepted");
 }
 
 TEST_CASE("refused: spheres and cones", "[nff]") {
@@ -155,7 +155,7 @@ TEST_CASE("refused: spheres and cones", "[nff]") {
                     {"c 0 0 0 -1 0 0 1 0.5", "9: one radius of the cone is negative"},
                     {"c 1 2 3 1\n1 2 3 2", "9: the height of the cone is zero"}});
     for (const char* cone : {"c 0 0 0 0 0 0 1 1", "c 0 0 0 -1 0 0 1 0", "c 0 0 0 0 0 0 1 -1"})
-        CHECK(refusal(kView + cone) == "accepted");
+        CHECK(refusal(kShortView + cone) == "accepted");
 }
 
 TEST_CASE("refused: polygons", "[nff]") {
@@ -188,7 +188,7 @@ TEST_CASE("refused: raya's extension", "[nff]") {
          {"#raya plane 0 0 1e-30 10", "9: the plane lies too far from the origin"},
          {"s 0 0 0 1 #raya plane 0 0 1 0", "9: '#raya' must be the first word of its line"},
          {kChecker, "9: no plane or polygon follows this '#raya checker'"},
-         {kChecker + kSphere, "9: no plane or polygon follows this '#raya checker'"},
+         {kChecker + kOneSphere, "9: no plane or polygon follows this '#raya checker'"},
          {kChecker + kChecker + kTriangle, "10: a second '#raya checker' before"},
          {"#raya checker 1 1 1 0 0 0 0\n" + kTriangle, "9: the size of the checker must be positive"},
          {"#raya checker 1 1 1 0 0 0 -1\n" + kTriangle, "9: the size of the checker must be positive"},
@@ -207,7 +207,7 @@ TEST_CASE("refused: files that cannot be read", "[nff]") {
 }
 
 TEST_CASE("refused by the writer: a checker that NFF cannot express", "[nff]") {
-    Scene scene = parse_nff(kView + kSphere, "t.nff");
+    Scene scene = parse_nff(kShortView + kOneSphere, "t.nff");
     scene.surfaces[0].checker = Checker{{1, 1, 1}, {0, 0, 0}, 1};
     CHECK_THROWS_WITH(write_nff(scene), "t.nff: NFF has no checkered spheres and cones; use a plane or polygon");
 }

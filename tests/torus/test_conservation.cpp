@@ -21,15 +21,15 @@ std::uint64_t sum(const std::vector<std::uint64_t>& values) {
 }
 
 // Which ray of which pixel: the records of one ray are the stages of its way.
-using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
-RayKey key_of(const PacketRecord& p) {
+using LightKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
+LightKey light_key(const PacketRecord& p) {
     return {p.head.pixel, p.head.path, raya_state_level(state_of(p)), raya_state_light(state_of(p))};
 }
 
-std::map<RayKey, std::vector<PacketRecord>> ways_of(const std::vector<PacketRecord>& records) {
-    std::map<RayKey, std::vector<PacketRecord>> ways;
+std::map<LightKey, std::vector<PacketRecord>> ways_of(const std::vector<PacketRecord>& records) {
+    std::map<LightKey, std::vector<PacketRecord>> ways;
     for (const PacketRecord& p : records)
-        if (kind_of(p) != RAYA_KIND_RETURN) ways[key_of(p)].push_back(p);
+        if (kind_of(p) != RAYA_KIND_RETURN) ways[light_key(p)].push_back(p);
     return ways;
 }
 
@@ -146,12 +146,12 @@ Ways check_ways(const Recorded& r, const TorusSettings& s) {
 
 // A return goes to the root, and each place in a pixel's tree is answered once.
 void check_returns(const Recorded& r) {
-    std::map<RayKey, int> answers;
+    std::map<LightKey, int> answers;
     std::size_t astray = 0;
     for (const PacketRecord& p : r.records) {
         if (kind_of(p) != RAYA_KIND_RETURN) continue;
         astray += p.destination != RAYA_ROOT || p.source == RAYA_ROOT;
-        ++answers[key_of(p)];
+        ++answers[light_key(p)];
     }
     CHECK(astray == 0);
     CHECK(std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.second == 1; }));

@@ -10,12 +10,12 @@
 namespace raya {
 namespace {
 
-struct Fault {
+struct KernelFault {
     const char* what;
     SourcePatch patch;
 };
 
-const Fault kFaults[] = {
+const KernelFault kFaults[] = {
     {"accept drops a packet",
      {"torus/accept.cl", "packet.head.state &= ~RAYA_STATE_FRESH;",
       "packet.head.state &= packet.head.pixel == 7 ? 0 : ~RAYA_STATE_FRESH;"}},
@@ -127,7 +127,7 @@ TEST_CASE("kernels with a fault are found out", "[torus][.][faults]") {
     std::vector<Traffic> right;
     for (const Trial& t : trials) right.push_back(traffic_of(session, t.scene, t.c));
     for (std::size_t i = 0; i < right.size(); ++i) CHECK(right[i].image == ring_image(trials[i].scene, trials[i].c));
-    for (const Fault& fault : kFaults) {
+    for (const KernelFault& fault : kFaults) {
         CAPTURE(fault.what);
         check_patches({.patches = {fault.patch}});
         std::string how;

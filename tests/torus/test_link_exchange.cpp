@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kPoison = 0xdead0000;
+constexpr std::uint32_t kUnsent = 0xdead0000;
 
 // The boxes of a machine as a test fills and empties them: a model of what nodes do between exchanges.
 class Boxes {
@@ -28,7 +28,7 @@ class Boxes {
           links_(session, share_, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
           status_(nodes_),
           device_status_(session.buffer<std::uint32_t>("status", status_.words.size())),
-          out_(links_.outboxes().size(), kPoison),
+          out_(links_.outboxes().size(), kUnsent),
           in_(out_.size()) {
         links_.clear();
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) out_[at(box)] = 0;
@@ -141,7 +141,7 @@ class Boxes {
         inbox(link, end) = packets;
         outbox(link, node) = 0;
         out_[box] = 0;
-        std::fill_n(&out_[box] + words_, capacity_ * words_, kPoison);
+        std::fill_n(&out_[box] + words_, capacity_ * words_, kUnsent);
     }
 
     void count_ways() {

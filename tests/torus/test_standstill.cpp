@@ -37,12 +37,12 @@ Scene scene_in_one_voxel(std::uint64_t seed) {
 }
 
 // A render, and how the machine stood still, if it did.
-struct Outcome {
+struct Ending {
     std::string image;
     std::optional<StandstillFigures> stand;
 };
 
-Outcome outcome_of(TorusRenderer& renderer) {
+Ending outcome_of(TorusRenderer& renderer) {
     try {
         return {one_image(renderer.render()), {}};
     } catch (const Standstill& still) {
@@ -123,7 +123,7 @@ TEST_CASE("a machine that stands still ends with the queue that is found", "[tor
         short_one.inject = inject;
         CAPTURE(name, case_text(short_one));
         TorusRenderer renderer(session, scene, settings_of(short_one));
-        const Outcome first = outcome_of(renderer);
+        const Ending first = outcome_of(renderer);
         if (!first.stand) CHECK(first.image == expected);
         if (!first.stand) continue;
         ++stood;
@@ -141,7 +141,7 @@ TEST_CASE("a machine that stands still ends with the queue that is found", "[tor
         CHECK(r.made == r.ended);
         // The same again: nothing is left over from the first time, nor from looking for a longer queue.
         renderer.set_queue(short_one.queue);
-        const Outcome again = outcome_of(renderer);
+        const Ending again = outcome_of(renderer);
         REQUIRE(again.stand);
         CHECK(same(*again.stand, *first.stand));
     }
@@ -205,7 +205,7 @@ TEST_CASE("queues of any length lead to the image, or to one that does", "[torus
         c.queue = shortest_of(scene, c) + random_below(random, 8);
         CAPTURE(seed, i, case_text(c));
         TorusRenderer renderer(session, scene, settings_of(c));
-        Outcome outcome = outcome_of(renderer);
+        Ending outcome = outcome_of(renderer);
         if (outcome.stand) {
             ++stood;
             REQUIRE(search(renderer, c.queue).ends);

@@ -27,7 +27,7 @@ void send(TorusResult& result, std::uint32_t node, std::uint32_t link, std::uint
     result.link_words[node * RAYA_LINKS + link] += packets * words;
 }
 
-Approx about(double value) { return Approx(value).epsilon(1e-12); }
+Approx about_ms(double value) { return Approx(value).epsilon(1e-12); }
 
 TEST_CASE("a node computes, sends and receives; a message takes both its ends' time", "[torus]") {
     const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
@@ -36,10 +36,10 @@ TEST_CASE("a node computes, sends and receives; a message takes both its ends' t
     send(result, 0, 0, 1000, 16);  // to node 1
     send(result, 3, 0, 500, 8);    // to node 0, round the end
     const TorusTime time = torus_time(torus, result);
-    CHECK(time.compute_ms == about(2'000'000 * kCycleMs));
-    CHECK(time.messages_ms == about((1000 * 51 + 500 * 35) * kCycleMs));    // node 0
-    CHECK(time.processor_ms == about((2'000'000 + 1000 * 51) * kCycleMs));  // node 1
-    CHECK(time.links_ms == about(16'000 * kWordMs));
+    CHECK(time.compute_ms == about_ms(2'000'000 * kCycleMs));
+    CHECK(time.messages_ms == about_ms((1000 * 51 + 500 * 35) * kCycleMs));    // node 0
+    CHECK(time.processor_ms == about_ms((2'000'000 + 1000 * 51) * kCycleMs));  // node 1
+    CHECK(time.links_ms == about_ms(16'000 * kWordMs));
     CHECK(time.overlapped_ms == time.processor_ms);
     CHECK(time.stepwise_ms == 0);  // no supersteps here
 }
@@ -50,25 +50,25 @@ TEST_CASE("both ways of a link share it, round the end as well", "[torus]") {
     const std::uint32_t from = raya_node_of(torus, 0, 2, 0), to = raya_node_of(torus, 0, 0, 0);
     send(result, from, 2, 100, 16);  // up along y from the last row to the first
     send(result, to, 3, 100, 16);    // and down again
-    CHECK(torus_time(torus, result).links_ms == about(1600 * kBothWaysWordMs));
+    CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
     send(result, to, 2, 90, 16);  // another link
-    CHECK(torus_time(torus, result).links_ms == about(1600 * kBothWaysWordMs));
+    CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
     send(result, from, 2, 100, 16);
-    CHECK(torus_time(torus, result).links_ms == about(1600 * kBothWaysWordMs + 1600 * kWordMs));
+    CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs + 1600 * kWordMs));
     // Two nodes along x are joined by two links, one each way round: they do not share.
     TorusResult two = result_of(torus);
     send(two, 0, 0, 100, 16);
     send(two, 1, 0, 100, 16);
-    CHECK(torus_time(torus, two).links_ms == about(1600 * kWordMs));
+    CHECK(torus_time(torus, two).links_ms == about_ms(1600 * kWordMs));
     send(two, 1, 1, 100, 16);
-    CHECK(torus_time(torus, two).links_ms == about(1600 * kBothWaysWordMs));
+    CHECK(torus_time(torus, two).links_ms == about_ms(1600 * kBothWaysWordMs));
 }
 
 TEST_CASE("every superstep waits for its busiest node and its busiest link", "[torus]") {
     const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus2d);
     TorusResult result = result_of(torus);
     result.supersteps = {{1000, 16, 0}, {5000, 0, 0}, {0, 320, 0}};
-    CHECK(torus_time(torus, result).stepwise_ms == about(6000 * kCycleMs + 336 * kBothWaysWordMs));
+    CHECK(torus_time(torus, result).stepwise_ms == about_ms(6000 * kCycleMs + 336 * kBothWaysWordMs));
 }
 
 /// Supersteps of random work and traffic; what the nodes did in all is their sum.

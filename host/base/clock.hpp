@@ -1,9 +1,16 @@
-// The time of day, as files tell it.
+// The time of day, and the time that something takes.
 #pragma once
+#include <chrono>
 #include <ctime>
 #include <string>
 
 namespace raya {
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Now, by Coordinated Universal Time; `format` as std::strftime has it, 63 characters at most.
 inline std::string utc_text(const char* format) {
