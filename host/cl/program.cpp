@@ -51,7 +51,10 @@ std::string user_build_options() {
     return options != nullptr ? options : "";
 }
 
-bool logs_kernel_builds() { return std::getenv("RAYA_KERNEL_LOG") != nullptr; }
+bool logs_kernel_builds() {
+    const char* const file = std::getenv("RAYA_KERNEL_LOG");
+    return file != nullptr && *file != 0;
+}
 
 void log_kernel_build(const char* step, const std::string& name, const std::string& options, Clock::time_point start) {
     const double seconds = seconds_since(start);
