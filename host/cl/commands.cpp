@@ -59,7 +59,9 @@ Program Session::build(const std::string& name, const std::string& source,
     if (const std::string more = user_build_options(); !more.empty()) all.push_back(more);
     const auto build = [&] {
         const StepLog::Step building = step("build " + name);
+        const Clock::time_point start = Clock::now();
         Program program(context_, device_, name, source, all);
+        if (logs_kernel_builds()) log_kernel_build("build", name, program.options(), start);
         tell(kDetailed, fmt::format("build {}: options {}", name, program.options()));
         tell(kDetailed, program.log());
         return program;
@@ -127,10 +129,18 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
                         what, info_.name, most, most));
     }
+    const bool logged = logs_kernel_builds() && launched_.emplace(kernel(), group_size).second;
+    const std::string name = fmt::format("{}, groups of {}", record.object, group_size);
+    if (logged) finish();
+    const Clock::time_point start = Clock::now();
     submit(what, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
     });
+    if (!logged) return;
+    finish();
+    log_kernel_build("launch", name,
+                     kernel.getInfo<CL_KERNEL_PROGRAM>().getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);
 }
 
 void Session::write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,

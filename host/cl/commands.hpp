@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <thread>
@@ -234,6 +235,7 @@ class Session {
     Profile profile_;
     std::unique_ptr<KeptPrograms> kept_programs_;  // null: none are kept
     std::map<std::string, std::uint32_t> launch_limits_;
+    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // with which group size, for RAYA_KERNEL_LOG
     bool announces_ = false;
     StepLog* steps_ = nullptr;
     std::size_t noted_arguments_ = 0;  // launches whose arguments are still to be kept

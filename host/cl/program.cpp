@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <utility>
 
 #include "host/cl/driver.hpp"
@@ -48,6 +49,17 @@ std::string argument_name(const cl::Kernel& kernel, cl_uint index) {
 std::string user_build_options() {
     const char* const options = std::getenv("RAYA_BUILD_OPTIONS");
     return options != nullptr ? options : "";
+}
+
+bool logs_kernel_builds() {
+    const char* const file = std::getenv("RAYA_KERNEL_LOG");
+    return file != nullptr && *file != 0;
+}
+
+void log_kernel_build(const char* step, const std::string& name, const std::string& options, Clock::time_point start) {
+    const double seconds = seconds_since(start);
+    std::ofstream(std::getenv("RAYA_KERNEL_LOG"), std::ios::app)
+        << fmt::format("{:.4f}\t{}\t{}\t{}\n", seconds, step, name, options) << std::flush;
 }
 
 Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,

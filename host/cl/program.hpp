@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/clock.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/memory.hpp"
 #include "host/cl/opencl.hpp"
@@ -125,6 +126,13 @@ std::size_t local_bytes_of(const LocalMemory<T>& local) {
 
 /// What RAYA_BUILD_OPTIONS adds to the options of every program.
 std::string user_build_options();
+
+/// Appends what a build or a first launch took to the file that RAYA_KERNEL_LOG names, from `start` to now: a line
+/// "seconds <tab> step <tab> name <tab> options". tools/kernel_builds adds them up.
+void log_kernel_build(const char* step, const std::string& name, const std::string& options, Clock::time_point start);
+
+/// Whether RAYA_KERNEL_LOG is set.
+bool logs_kernel_builds();
 
 /// A built program. Made by Session::build.
 class Program {

@@ -41,7 +41,7 @@ def same(ours, theirs, limit):
 
 
 def is_measured(stem, column):
-    if re.search(r"\bmeasured\b", column):
+    if "measured" in column:
         return True
     return any(re.fullmatch(file, stem) and re.fullmatch(columns, column) for file, columns in MEASURED.items())
 
@@ -55,7 +55,8 @@ def compare_table(ours, theirs, stem):
     compared = left_out = 0
     differences = []
     for number, (a, b) in enumerate(zip(ours[1:], theirs[1:]), 1):
-        if any(cell.startswith("measured") for cell in b):
+        # Embree's reciprocals depend on the processor, and with them where a ray goes on.
+        if any(cell.startswith("measured") or cell == "Embree" for cell in b):
             left_out += len(b)
             continue
         for column, x, y in zip(theirs[0], a, b):

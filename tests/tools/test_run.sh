@@ -30,7 +30,7 @@ run() { code=0; out=$(PATH=$scratch/bin:$PATH "$scratch/tools/run" devices 2>&1)
 
 echo 300 >"$scratch/steps"
 run
-[[ $code == 0 && $out == "building raya: 300 steps on 2 cores, about 6 min"$'\n'"building raya: [7/300] after "*$'\n'"raya devices" ]] || fail "$out"
+[[ $code == 0 && $out == "building raya: 300 steps on 2 cores, about 12 min"$'\n'"building raya: [7/300] after "*$'\n'"raya devices" ]] || fail "$out"
 [[ $out != *Linking* ]] || fail "ninja's output is printed: $out"
 echo 2 >"$scratch/steps"
 run
