@@ -41,5 +41,5 @@ run
 rm "$scratch/broken"
 echo 30 >"$scratch/steps"
 out=$(PATH=$scratch/bin:$PATH python3 -c 'import pty, sys; sys.exit(pty.spawn(sys.argv[1:]))' "$scratch/tools/run" devices </dev/null | tr -d '\r')
-[[ $out == "building raya: 30 steps on 2 cores, about 1 min"$'\n'*$'\e[K[7/30] Building one.cpp'*$'\e[K'"raya devices" ]] || fail "$out"
+[[ $out == "building raya: 30 steps on 2 cores, about 2 min"$'\n'*$'\e[K[7/30] Building one.cpp'*$'\e[K'"raya devices" ]] || fail "$out"
 echo "tools/run: as expected"
