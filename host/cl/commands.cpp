@@ -61,7 +61,7 @@ Program Session::build(const std::string& name, const std::string& source,
         const StepLog::Step building = step("build " + name);
         const Clock::time_point start = Clock::now();
         Program program(context_, device_, name, source, all);
-        if (logs_kernel_builds()) log_kernel_build("build", name, program.options(), start);
+        if (logs_builds_) log_kernel_build("build", name, program.options(), start);
         tell(kDetailed, fmt::format("build {}: options {}", name, program.options()));
         tell(kDetailed, program.log());
         return program;
@@ -129,8 +129,8 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
                         what, info_.name, most, most));
     }
-    const bool logged = logs_kernel_builds() && launched_.emplace(kernel(), group_size).second;
-    const std::string name = fmt::format("{}, groups of {}", record.object, group_size);
+    const bool logged = logs_builds_ && launched_.emplace(kernel(), group_size).second;
+    const std::string name = logged ? fmt::format("{}, groups of {}", record.object, group_size) : "";
     if (logged) finish();
     const Clock::time_point start = Clock::now();
     submit(what, std::move(record), [&](cl::Event* event) {

@@ -235,6 +235,7 @@ class Session {
     Profile profile_;
     std::unique_ptr<KeptPrograms> kept_programs_;  // null: none are kept
     std::map<std::string, std::uint32_t> launch_limits_;
+    bool logs_builds_ = logs_kernel_builds();
     std::set<std::pair<cl_kernel, std::size_t>> launched_;  // with which group size, for RAYA_KERNEL_LOG
     bool announces_ = false;
     StepLog* steps_ = nullptr;

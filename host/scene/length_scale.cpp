@@ -33,7 +33,7 @@ double largest_length(const Scene& scene) {
     return largest;
 }
 
-/// ScaleRange between a scene at scale 1 and the limits of a format, in powers of two; negative: it is beyond them.
+/// What is left between a scene at scale 1 and the limits of a format, in powers of two; negative: it is beyond them.
 struct ScaleRange {
     double above, below;
 };

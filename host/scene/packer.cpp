@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-// JobWords of one format, with lengths of one scale.
+// A job's words, of one format, with lengths of one scale.
 struct JobWords : std::vector<std::uint32_t> {
     NumberFormat format;
     double unit;  // what a length of 1 in the scene is in the job: a power of two

@@ -78,7 +78,7 @@ class NodePacker {
             throw std::logic_error("a partition needs one start more than voxels");
     }
 
-    // std::vector<std::uint32_t> that a node takes.
+    // Words that a node takes.
     std::uint64_t words(std::uint32_t node) {
         find_surfaces(node);
         const raya_job& h = job_.header;
