@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import tempfile
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from shlex import quote
 from types import SimpleNamespace
@@ -88,11 +87,10 @@ def run_all(options, chosen, left_out, scenes):
                 try:
                     name = options.study if options.study.endswith(".py") else one.name
                     page, device = worker.run(name, scenes, kept, options)
-                except (BrokenProcessPool, raya.DeviceError) as error:
-                    reason = "the OpenCL driver crashed" if isinstance(error, BrokenProcessPool) else str(error)
+                except raya.DeviceError as error:
                     if len(chosen) == 1:
-                        raise raya.DeviceError(reason) from None
-                    left_out.append(f"study {one.name} is left out: {reason}")
+                        raise
+                    left_out.append(f"study {one.name} is left out: {error}")
                     print(f"raya: {left_out[-1]}", file=sys.stderr)
                     code = EXIT_DEVICE
                     continue

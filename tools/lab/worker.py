@@ -1,10 +1,9 @@
 """A process that runs studies: a driver that crashes ends one of them, and the next has a new process."""
 import os
+import signal
 import sys
 import traceback
 import warnings
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 
 import raya
@@ -46,21 +45,47 @@ def place_of(error, run):
     return f"{os.path.basename(file)}, line {lines[-1]}: " if lines else ""
 
 
+def answer(pipe):
+    """Runs what the pipe brings until nobody is at its other end, and sends back (result, error)."""
+    for number in (signal.SIGINT, signal.SIGQUIT):  # of a terminal, which goes to every process: the first one ends this one
+        signal.signal(number, signal.SIG_IGN)
+    while True:
+        try:
+            arguments = pipe.recv()
+        except EOFError:
+            return
+        try:
+            pipe.send((run_study(*arguments), None))
+        except Exception as error:
+            pipe.send((None, error))
+
+
 class Worker:
+    """Not an executor of concurrent.futures: a signal leaves that one's semaphores behind, and Python warns of them."""
+
     def __init__(self):
-        self._pool = None
+        self._process = None
 
     def run(self, *arguments):
-        if self._pool is None:
-            self._pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+        """(page, device) of run_study(). DeviceError when the process dies of it."""
+        if self._process is None:
+            context = get_context("spawn")
+            self._pipe, theirs = context.Pipe()
+            self._process = context.Process(target=answer, args=(theirs,), daemon=True)
+            self._process.start()
+            theirs.close()
         try:
-            return self._pool.submit(run_study, *arguments).result()
-        except BrokenProcessPool:
-            self._pool = None
-            raise
+            self._pipe.send(arguments)
+            result, error = self._pipe.recv()
+        except (EOFError, ConnectionError):
+            self.close()
+            raise raya.DeviceError("the OpenCL driver crashed") from None
+        if error:
+            raise error
+        return result
 
     def close(self):
-        if self._pool is not None:
-            for process in list(getattr(self._pool, "_processes", {}).values()):
-                process.kill()
-            self._pool.shutdown(wait=False, cancel_futures=True)
+        if self._process is not None:
+            self._process.kill()
+            self._process.join()
+            self._process = None

@@ -1,0 +1,38 @@
+"""A driver that crashes in a study ends that study: it is reported, and the next one runs in a new process."""
+from types import SimpleNamespace
+
+import pytest
+import raya
+from raya.lab.worker import Worker
+
+OPTIONS = SimpleNamespace(verbosity=0, no_tuned=True, size=32, network=None, device=None)
+STUDY = '''"""Title
+
+Question?
+
+- method.
+"""
+from raya.lab import Page
+
+
+def run(lab, scenes):
+    {}
+    return Page({{}}, ["Found."])
+'''
+
+
+def test_a_crash_ends_one_study(tmp_path):
+    crash, good, none = (tmp_path / f"{name}.py" for name in ("crash", "good", "none"))
+    crash.write_text(STUDY.format("__import__('os').kill(__import__('os').getpid(), 11)"))
+    good.write_text(STUDY.format("pass"))
+    none.write_text(STUDY.format("return lab"))
+    worker = Worker()
+    try:
+        with pytest.raises(raya.DeviceError, match="crashed"):
+            worker.run(str(crash), [], str(tmp_path), OPTIONS)
+        page, device = worker.run(str(good), [], str(tmp_path), OPTIONS)
+        assert page.title == "Title" and device["name"]
+        with pytest.raises(ValueError, match=r"run\(\) returns Laboratory"):
+            worker.run(str(none), [], str(tmp_path), OPTIONS)
+    finally:
+        worker.close()
