@@ -8,18 +8,17 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/base/scratch_folder.hpp"
+#include "tests/base/temporary_folder.hpp"
 
 namespace raya {
 
-/// Sets POCL_CACHE_DIR to a fresh folder. The environment variable RAYA_KERNEL_STORE may name a folder that all
-/// programs of one run share (tools/test makes it, anew each time: a kernel that no longer builds must not pass because
-/// an older one does); without it the cache starts empty.
+/// Sets POCL_CACHE_DIR to a fresh folder. The environment variable RAYA_KERNEL_STORE may name a folder that programs
+/// share, those of one run and of later ones (tools/test): its entries are named after source, options, device and
+/// driver, and a build that fails adds none (test_program.cpp). Without it the cache starts empty.
 class KernelCache {
   public:
     KernelCache() {
         setenv("POCL_CACHE_DIR", folder_.path().c_str(), 1);
-        if (const char* store = std::getenv("RAYA_KERNEL_STORE"); store != nullptr && *store != '\0') store_ = store;
         if (!store_.empty() && std::filesystem::is_directory(store_)) add_missing(store_, folder_.path());
     }
 
@@ -32,6 +31,11 @@ class KernelCache {
     KernelCache& operator=(const KernelCache&) = delete;
 
   private:
+    static std::filesystem::path store() {
+        const char* const named = std::getenv("RAYA_KERNEL_STORE");
+        return named == nullptr ? "" : named;
+    }
+
     // Others may do the same at the same time: a file appears whole or not at all, and one that is there stays.
     static void add_missing(const std::filesystem::path& from, const std::filesystem::path& to) {
         std::error_code none;  // a file that is gone, or a full disk: then a kernel is built twice
@@ -41,6 +45,8 @@ class KernelCache {
                 continue;
             const std::filesystem::path part = target.string() + ".part" + std::to_string(getpid());
             std::filesystem::create_directories(target.parent_path(), none);
+            std::filesystem::create_hard_link(entry.path(), target, none);  // PoCL writes no file twice
+            if (!none) continue;
             if (std::filesystem::copy_file(entry.path(), part, none)) std::filesystem::rename(part, target, none);
         }
     }
@@ -50,8 +56,9 @@ class KernelCache {
         return name.find(".part") != std::string::npos || name.starts_with("tempfile");
     }
 
-    ScratchFolder folder_;
-    std::filesystem::path store_;
+    // Beside the store, so that files need no copies.
+    std::filesystem::path store_ = store();
+    TemporaryFolder folder_{store_.empty() ? "raya-test-kernels" : (store_.parent_path() / "kernels").string()};
 };
 
 }  // namespace raya

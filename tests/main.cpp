@@ -7,9 +7,10 @@
 #include "tests/kernel_cache.hpp"
 #include "tests/paths.h"
 
-// What a developer's devices were tuned to is no part of a test.
+// What a developer's devices were tuned to is no part of a test, nor are kernels that were compiled before it.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
+    setenv("RAYA_BINARIES", "off", 0);
     raya::set_own_file(RAYA_PROGRAM);
     const raya::KernelCache cache;
     return Catch::Session().run(argc, argv);

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <initializer_list>
 #include <string_view>
@@ -9,12 +10,16 @@
 
 namespace raya {
 
-/// Whether RAYA_THOROUGH=1 is set, as ctest's entries labelled `long` do: all formats, lanes, scenes and random cases.
+/// Whether RAYA_THOROUGH=1 is set, as ctest's entries labelled `sweep` do: all formats, lanes, scenes and random cases.
 /// Else few of each, so chosen that every kind of fault is still seen.
 inline bool thorough() {
     const char* text = std::getenv("RAYA_THOROUGH");
     return text != nullptr && std::string_view(text) == "1";
 }
+
+/// Lanes of a case that does not care: 0, the device's own, where everything is looked at or RAYA_OWN_LANES is set;
+/// else four, whose kernels are compiled in a third of the time of sixteen.
+inline std::uint32_t usual_lanes() { return thorough() || std::getenv("RAYA_OWN_LANES") != nullptr ? 0 : 4; }
 
 /// The first `few` of `all`, or all of them: for `for (... : quick(2, {...}))`.
 template <class T>
@@ -28,6 +33,13 @@ auto quick_of(std::size_t few, const Container& all) {
     using std::begin;
     using std::size;
     return std::vector(begin(all), begin(all) + (thorough() ? size(all) : std::min(few, size(all))));
+}
+
+/// For crossings of many things with many values: everything, or the next one value in turn.
+template <class Container>
+Container by_turns(const Container& all) {
+    static std::size_t turn = 0;
+    return thorough() ? all : Container{all[turn++ % all.size()]};
 }
 
 /// So many random cases.

@@ -8,15 +8,15 @@ FETCHED = "implementations"  # folder of the build folder: what tools/portabilit
 
 class Implementation:
     """How programs are started under one implementation. `slow`: fewer cases. `lacking`: why it cannot run, and the remedy. `of_device`: its
-    driver may be installed where its device is not.
+    driver may be installed where its device is not. `budget`: seconds that one kernel may take to compile.
 
     `watches`: it looks for faults itself and tells them on stderr alone, its exit code is 0 all the same. raya writes nothing there as long
     as all is right, so any line there counts. (Not Oclgrind's --log: each OpenCL context empties that file.)
     """
 
-    def __init__(self, name, variables=None, prefix=(), slow=False, lacking=None, watches=False, of_device=False):
+    def __init__(self, name, variables=None, prefix=(), slow=False, lacking=None, watches=False, of_device=False, budget=60):
         self.name, self.prefix, self.slow, self.lacking, self.watches = name, list(prefix), slow, lacking, watches
-        self.variables, self.of_device = dict(variables or {}), of_device
+        self.variables, self.of_device, self.budget = dict(variables or {}), of_device, budget
 
     def run(self, command, scratch, limit, more=None):
         """Exit code, None where it ran past `limit` seconds; stdout and stderr together; stdout; what `watches` found, or nothing."""
@@ -68,7 +68,7 @@ def known_implementations(build):
                                 lacking=None if shutil.which("oclgrind") else "not installed (Debian: oclgrind)"))
     # One lane: its compiler takes a minute for a kernel of 16.
     rusticl = {"OCL_ICD_VENDORS": str(icd("rusticl")), "RUSTICL_ENABLE": "llvmpipe", "RAYA_NUMBER_LANES": "1"}
-    found.append(Implementation("rusticl llvmpipe", rusticl, slow=True,
+    found.append(Implementation("rusticl llvmpipe", rusticl, slow=True, budget=300,
                                 lacking=None if icd("rusticl").exists() else "not installed (Debian: mesa-opencl-icd)"))
     others = sorted(p for p in VENDORS.glob("*.icd") if p.stem not in ("pocl", "rusticl", "mesa"))
     found += [Implementation(p.stem, {"OCL_ICD_VENDORS": str(p)}, of_device=True) for p in others]

@@ -58,20 +58,27 @@ bool is_within(const fs::path& path, const fs::path& folder) {
     return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// Nobody else may change what lies at this path, so the loader gets the path, which debuggers and messages show.
-fs::path checked_module(const std::string& name) {
+struct OwnFile {
+    fs::path folder;  // of the program
+    uid_t owner;
+};
+
+OwnFile own_file_now() {
     std::error_code failure;
     const fs::path self = own_file.empty() ? "/proc/self/exe" : own_file;
-    const fs::path program = (own_file.empty() ? fs::read_symlink(self, failure) : own_file).parent_path();
+    const fs::path folder = (own_file.empty() ? fs::read_symlink(self, failure) : own_file).parent_path();
     struct stat is {};
     if (failure || ::stat(self.c_str(), &is) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
-    const fs::path folder = program.filename() == "bin" ? program.parent_path() / "lib/raya" : program;
-    const fs::path file = fs::weakly_canonical(folder, failure) / name;
+    return {folder, is.st_uid};
+}
+
+/// Nobody else may change what lies at this path, so the loader gets the path, which debuggers and messages show.
+fs::path checked_module(const std::string& name) {
+    const fs::path file = module_folder() / name;
+    std::error_code failure;
     if (!fs::is_regular_file(fs::symlink_status(file, failure)))
         throw ModuleError(fmt::format("there is no file '{}'", file.string()));
-    // Who may change the folders above the program may replace the program itself.
-    std::string why = other_writers(file.parent_path(), {::geteuid(), is.st_uid}, Sticky::kRefused, program);
-    if (why.empty()) why = other_writers_of_one(file, {::geteuid(), is.st_uid}, Sticky::kRefused);
+    const std::string why = writers_besides_owner(file);
     if (why.empty()) return file;
     throw UserError(
         fmt::format("refused to load '{}': {}; remedy: chmod go-w, or install raya as root", file.string(), why));
@@ -100,6 +107,20 @@ std::string memory_limit() {
     return fmt::format("the limit of {} MB on memory (ulimit -v)", limit.rlim_cur >> 20);
 }
 void set_own_file(const fs::path& file) { own_file = file; }
+
+fs::path module_folder() {
+    const fs::path program = own_file_now().folder;
+    std::error_code failure;
+    return fs::weakly_canonical(program.filename() == "bin" ? program.parent_path() / "lib/raya" : program, failure);
+}
+
+std::string writers_besides_owner(const fs::path& file) {
+    const OwnFile own = own_file_now();
+    // Who may change the folders above the program may replace the program itself.
+    std::string why = other_writers(file.parent_path(), {::geteuid(), own.owner}, Sticky::kRefused, own.folder);
+    if (why.empty()) why = other_writers_of_one(file, {::geteuid(), own.owner}, Sticky::kRefused);
+    return why;
+}
 
 void* module_function(const std::string& name, const char* symbol) {
     const fs::path file = checked_module(name + ".so");

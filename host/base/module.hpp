@@ -28,6 +28,13 @@ std::string memory_limit();
 /// this one and the program's owner may change the file or its folder, or a limit on memory is in the way.
 void* module_function(const std::string& name, const char* symbol);
 
+/// Where modules lie, and what else came with the program. ModuleError.
+std::filesystem::path module_folder();
+
+/// Why users other than root, this one and the program's owner may change this file, or a folder between it and the
+/// program's; empty where they may not.
+std::string writers_besides_owner(const std::filesystem::path& file);
+
 /// For what is no program of its own, the Python module, and for tests: the file from which modules are found.
 void set_own_file(const std::filesystem::path& file);
 

@@ -22,9 +22,9 @@ std::string progress_line(const std::string& what, const std::optional<Done>& do
                        left > 0 ? fmt::format("{:.0f} s left", left) : fmt::format("{:.0f} s so far", seconds));
 }
 
-std::jthread announce_compiling(const std::string& device) {
+std::jthread announce_compiling(const std::string& device, std::chrono::milliseconds patience) {
     if (is_quiet()) return {};
-    return std::jthread([device](const std::stop_token& end) {
+    return std::jthread([device, patience](const std::stop_token& end) {
         using namespace std::chrono;
         std::mutex mutex;
         std::condition_variable_any ended;
@@ -34,6 +34,11 @@ std::jthread announce_compiling(const std::string& device) {
         ended.wait_for(lock, end, 1s, never);
         if (end.stop_requested()) return;
         say(fmt::format("raya: compiling kernels for {} (first run only) ...\n", device));
+        if (ended.wait_for(lock, end, patience, never); !end.stop_requested())
+            say(fmt::format("raya: still compiling after {:.0f} s; what may help: fewer --lanes; with PoCL the variable "
+                            "POCL_WORK_GROUP_METHOD=loops; raya bench --build shows which kernel it is, "
+                            "docs/porting.md why\n",
+                            duration<double>(steady_clock::now() - began).count()));
         ended.wait(lock, end, never);
         say(fmt::format("raya: compiling kernels took {:.1f} s\n",
                         duration<double>(steady_clock::now() - began).count()));

@@ -24,7 +24,9 @@ std::string progress_line(const std::string& what, const std::optional<Done>& do
 
 /// Says on stderr, unless --quiet is given, that kernels are compiled for the device once this has lasted longer than
 /// to load compiled ones takes, and at the end, when what is returned goes out of scope, for how long it lasted.
-[[nodiscard]] std::jthread announce_compiling(const std::string& device);
+/// `patience` later it says what may help.
+[[nodiscard]] std::jthread announce_compiling(const std::string& device,
+                                              std::chrono::milliseconds patience = std::chrono::seconds(59));
 
 /// Draws on stderr, only if that is a terminal: within a second, five times a second, whatever the command is about.
 /// What runs and for how long; where a share is known, a bar and the time that is left. Erased when it goes out of

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -22,6 +24,27 @@ constexpr std::size_t kMaxPending = 4096;
 
 HostMemory::Kind memory_kind(bool pinned) { return pinned ? HostMemory::Kind::kPinned : HostMemory::Kind::kPlain; }
 
+/// What all sessions of a device share. Never taken down: drivers outlive no static object.
+struct SharedContext {
+    cl::Context context;
+    std::mutex building;
+    std::map<std::pair<std::vector<std::string>, std::string>, Program> programs;  // by options, source
+};
+
+SharedContext& shared_context(const cl::Device& device) {
+    static std::mutex adding;
+    static auto* const contexts = new std::map<cl_device_id, SharedContext>;
+    const std::scoped_lock lock(adding);
+    const auto [shared, is_new] = contexts->try_emplace(device());
+    try {
+        if (is_new) shared->second.context = cl::Context(device);
+    } catch (...) {
+        contexts->erase(shared);
+        throw;
+    }
+    return shared->second;
+}
+
 std::string copied(const std::string& from, const std::string& to) { return from + " -> " + to; }
 
 }  // namespace
@@ -29,7 +52,7 @@ std::string copied(const std::string& from, const std::string& to) { return from
 Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
     : device_(device), info_(device_info(device)), profile_(timing == Timing::kOn && info_.profiling) {
     guarded(fmt::format("opening a session on {} {}", info_.platform, info_.name), [&] {
-        context_ = cl::Context(device_);
+        context_ = shared_context(device_).context;
         queue_ =
             std::make_unique<cl::CommandQueue>(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
         pinned_ = transfers == Transfers::kStaged || (transfers == Transfers::kOfDevice && info_.own_memory);
@@ -57,19 +80,22 @@ Program Session::build(const std::string& name, const std::string& source,
     std::vector<std::string> all = options;
     if (noted_arguments_ > 0) all.emplace_back("-cl-kernel-arg-info");  // names of arguments; the code stays the same
     if (const std::string more = user_build_options(); !more.empty()) all.push_back(more);
-    const auto build = [&] {
-        const StepLog::Step building = step("build " + name);
-        const Clock::time_point start = Clock::now();
-        Program program(context_, device_, name, source, all);
-        if (logs_builds_) log_kernel_build("build", name, program.options(), start);
-        tell(kDetailed, fmt::format("build {}: options {}", name, program.options()));
-        tell(kDetailed, program.log());
-        return program;
-    };
-    if (!kept_programs_) return build();
-    const auto known = kept_programs_->find({all, source});
-    return known != kept_programs_->end() ? known->second
-                                          : kept_programs_->emplace(std::pair(all, source), build()).first->second;
+    SharedContext& shared = shared_context(device_);
+    const std::scoped_lock lock(shared.building);
+    const auto known = shared.programs.find({all, source});
+    if (known != shared.programs.end()) return known->second;
+    const StepLog::Step building = step("build " + name);
+    const Clock::time_point start = Clock::now();
+    Program program(context_, device_, name, source, all);
+    if (logs_builds_) log_kernel_build("build", name, program.options(), start);
+    if (builds_ != nullptr) builds_->push_back({program.handle(), name, program.options(), seconds_since(start)});
+    tell(kDetailed, fmt::format("build {}: options {}", name, program.options()));
+    tell(kDetailed, program.log());
+    return shared.programs.emplace(std::pair(all, source), program).first->second;
+}
+
+void Session::keep_binaries() const {
+    for (const auto& [what, program] : shared_context(device_).programs) program.keep_binary();
 }
 
 std::jthread Session::compiling() const { return announces_ ? raya::announce_compiling(info_.name) : std::jthread(); }
@@ -129,18 +155,22 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
                         what, info_.name, most, most));
     }
-    const bool logged = logs_builds_ && launched_.emplace(kernel(), group_size).second;
-    const std::string name = logged ? fmt::format("{}, groups of {}", record.object, group_size) : "";
-    if (logged) finish();
+    const bool noted = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
+    const std::string name = noted ? fmt::format("{}, groups of {}", record.object, group_size) : "";
+    if (noted) finish();
     const Clock::time_point start = Clock::now();
     submit(what, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
     });
-    if (!logged) return;
+    if (!noted) return;
     finish();
-    log_kernel_build("launch", name,
-                     kernel.getInfo<CL_KERNEL_PROGRAM>().getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);
+    const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();
+    if (logs_builds_)
+        log_kernel_build("launch", name, program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);
+    if (builds_ == nullptr) return;
+    for (KernelBuild& build : *builds_)
+        if (build.program() == program()) build.launch_s += seconds_since(start);
 }
 
 void Session::write_bytes(const std::string& label, const cl::Buffer& to, const std::string& name, std::size_t offset,

@@ -51,16 +51,14 @@ class Session {
         return Buffer<T>(allocate(name, count, sizeof(T)), name, count);
     }
 
-    /// See Program.
+    /// See Program. A device's sessions share what they have built: the same source with the same options is built once
+    /// in a process.
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
     /// The most work of a launch labelled so, in its kernel's units: no limit until the device has cut loops.
     std::uint32_t& launch_limit(const std::string& label) {
         return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
     }
-
-    /// From now on a program is built once: the same source with the same options again gives the one that was built.
-    void keep_programs() { kept_programs_ = std::make_unique<KeptPrograms>(); }
 
     /// Runs `groups` work-groups of `group_size` work-items each (one dimension). Does not wait.
     template <class... Params>
@@ -164,6 +162,13 @@ class Session {
     /// From now on compiling() says what it does.
     void announce_compiling() { announces_ = true; }
 
+    /// From now on `builds` gets an entry for each program that is built and is told of its kernels' first launches;
+    /// null: no longer.
+    void note_builds(std::vector<KernelBuild>* builds) { builds_ = builds; }
+
+    /// Keeps the binaries of all programs that were built for the device, see Program::keep_binary().
+    void keep_binaries() const;
+
     /// To be kept while kernels are compiled and first launched, see announce_compiling() of host/base/progress.hpp.
     [[nodiscard]] std::jthread compiling() const;
 
@@ -188,7 +193,6 @@ class Session {
         const std::string& name;
         std::size_t offset;  // bytes
     };
-    using KeptPrograms = std::map<std::pair<std::vector<std::string>, std::string>, Program>;  // by options, source
     struct Pending {  // a command whose times are not known yet
         CommandRecord record;
         cl::Event event;
@@ -233,10 +237,10 @@ class Session {
     std::unique_ptr<Staging> staging_;
     std::vector<Pending> pending_;
     Profile profile_;
-    std::unique_ptr<KeptPrograms> kept_programs_;  // null: none are kept
     std::map<std::string, std::uint32_t> launch_limits_;
     bool logs_builds_ = logs_kernel_builds();
-    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // with which group size, for RAYA_KERNEL_LOG
+    std::vector<KernelBuild>* builds_ = nullptr;
+    std::set<std::pair<cl_kernel, std::size_t>> launched_;  // with which group size, where builds are noted
     bool announces_ = false;
     StepLog* steps_ = nullptr;
     std::size_t noted_arguments_ = 0;  // launches whose arguments are still to be kept

@@ -4,10 +4,14 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <utility>
 
+#include "host/base/module.hpp"
+#include "host/base/say.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
+#include "host/cl/kernel_binaries.hpp"
 
 namespace raya {
 namespace {
@@ -62,9 +66,18 @@ void log_kernel_build(const char* step, const std::string& name, const std::stri
         << fmt::format("{:.4f}\t{}\t{}\t{}\n", seconds, step, name, options) << std::flush;
 }
 
+std::size_t KernelBuild::binary_bytes() const {
+    return guarded(fmt::format("size of program '{}'", name), [this] {
+        std::size_t sum = 0;
+        for (const std::size_t bytes : program.getInfo<CL_PROGRAM_BINARY_SIZES>()) sum += bytes;
+        return sum;
+    });
+}
+
 Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
                  const std::vector<std::string>& options)
     : name_(std::move(name)), options_(joined(options)) {
+    if (takes_binary(context, device, source)) return;
     const std::string what = fmt::format("building program '{}'", name_);
     const std::string device_name = guarded(what, [&] {
         program_ = cl::Program(context, source);
@@ -82,6 +95,35 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         throw;
     }
     log_ = log_of(program_, device);
+    try {
+        binary_file_ = kernel_binary_file(device, source, options_);
+    } catch (const ModuleError&) {
+    }
+}
+
+bool Program::takes_binary(const cl::Context& context, const cl::Device& device, const std::string& source) {
+    try {
+        const std::optional<KernelBinary> binary = read_kernel_binary(device, source, options_);
+        if (!binary) return false;
+        program_ = cl::Program(context, {device}, {*binary});
+        const DriverCall call("loading a kernel's binary");
+        program_.build(device, options_.c_str());
+        tell(kDetailed, fmt::format("build {}: from the binary that came with raya\n", name_));
+        return true;
+    } catch (const cl::Error& error) {
+        tell(kDetailed, fmt::format("binary of {}: refused by the driver: {}\n", name_, error_name(error.err())));
+        return false;
+    } catch (...) {  // as in the constructor
+        program_() = nullptr;
+        throw;
+    }
+}
+
+void Program::keep_binary() const {
+    if (binary_file_.empty()) return;
+    const auto binaries = guarded(fmt::format("reading the binary of program '{}'", name_),
+                                  [this] { return program_.getInfo<CL_PROGRAM_BINARIES>(); });
+    write_kernel_binary(binary_file_, binaries.at(0));
 }
 
 cl::Kernel Program::checked_kernel(const std::string& kernel_name, std::size_t argument_count) const {

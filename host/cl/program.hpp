@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -134,6 +135,15 @@ void log_kernel_build(const char* step, const std::string& name, const std::stri
 /// Whether RAYA_KERNEL_LOG is set.
 bool logs_kernel_builds();
 
+/// What one program's build took, and the first launches of its kernels.
+struct KernelBuild {
+    cl::Program program;
+    std::string name, options;  // its file; as the compiler saw them
+    double build_s = 0, launch_s = 0;
+
+    std::size_t binary_bytes() const;  // for which PoCL compiles every kernel of the program once more. DeviceError
+};
+
 /// A built program. Made by Session::build.
 class Program {
   public:
@@ -145,6 +155,11 @@ class Program {
     const std::string& name() const { return name_; }
     const std::string& options() const { return options_; }  // as the compiler saw them
     const std::string& log() const { return log_; }          // warnings of a build that succeeded
+    const cl::Program& handle() const { return program_; }
+
+    /// Writes the binary where later runs find it (kernel_binaries.hpp), with the kernels that were launched; one that
+    /// came from there stays. UserError, DeviceError.
+    void keep_binary() const;
 
     /// The kernel `kernel_name`, which takes Args (see Kernel).
     /// DeviceError: no such kernel (lists those there are), or another number of parameters (names both numbers).
@@ -156,8 +171,11 @@ class Program {
   private:
     cl::Kernel checked_kernel(const std::string& kernel_name, std::size_t argument_count) const;
 
+    bool takes_binary(const cl::Context& context, const cl::Device& device, const std::string& source);
+
     cl::Program program_;
     std::string name_, options_, log_;
+    std::filesystem::path binary_file_;  // empty: the program came from it
 };
 
 }  // namespace raya

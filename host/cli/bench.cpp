@@ -11,6 +11,7 @@
 #include "host/base/say.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_options.hpp"
+#include "host/cli/bench_build.hpp"
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -37,7 +38,8 @@ struct BenchCommand {
     std::uint32_t samples = 7;
     std::string report, page, baseline;
     double tolerance = 10;  // percent
-    bool denormals = false;
+    bool denormals = false, build = false;
+    std::optional<double> limit;  // seconds
 };
 
 // Refuses what could not be compared in the end. Returns the baseline, empty where there is none to be.
@@ -79,6 +81,23 @@ void finish(const BenchCommand& command, const BenchReport& baseline, BenchRepor
                                        result.other_images)};
     fmt::print("{} compared, none slower by more than {} %, the same images\n", counted(result.compared, "row"),
                command.tolerance);
+}
+
+// Checked before anything is measured, against what cannot be meant.
+void check_build_options(const BenchCommand& command) {
+    if (command.limit && !(*command.limit > 0 && *command.limit <= 1e6))
+        throw UserError(fmt::format("--limit {}: must be above 0, and 1000000 seconds at most", *command.limit));
+}
+
+void finish_builds(const BenchCommand& command, const BenchReport& report) {
+    fmt::print("compiled for {} {} {}\n", report.platform, report.device, report.driver);
+    print_builds(report.builds);
+    write_report_and_page({command.report, ""}, to_json(report));
+    for (const BenchBuild& one : report.builds)
+        if (command.limit && one.build_s + one.launch_s > *command.limit)
+            throw CheckFailure{fmt::format("{}, {}, {}, {} lanes: {:.1f} s to compile, above --limit {} s", one.kernel,
+                                           one.variant, one.format, one.lanes, one.build_s + one.launch_s,
+                                           *command.limit)};
 }
 
 std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, const Scene& scene,
@@ -133,6 +152,7 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     Warnings warnings;
     warn_of_build_options(warnings);
     refuse_ignored(parsed, command);
+    check_build_options(command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
     const BenchReport baseline = checked_files(command);
@@ -142,10 +162,18 @@ void bench(const CLI::App& parsed, BenchCommand command) {
     const Scene scene = scene_of(command);
     const TunedUse tuned = use_tuned(command.render.no_tuned);
     const RingSettings settings = ring_settings(command.render, scene);
-    std::optional<ProgressBar> bar(std::in_place, true, "preparing");
+    std::optional<ProgressBar> bar(std::in_place, true, command.build ? "compiling" : "preparing");
     const cl::Device device = choose_device(command.render.device);
     Session session(device);
-    session.announce_compiling();
+    if (!command.build) session.announce_compiling();
+    if (command.build) {
+        const std::vector<std::string> variants =
+            command.variants.empty() ? std::vector<std::string>{"none", "grid", "bvh", "torus"} : command.variants;
+        BenchReport report = bench_report({}, session.device());
+        report.builds = bench_builds(session, scene, settings, formats, variants);
+        bar.reset();
+        return finish_builds(command, report);
+    }
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
     check_comparable(command, baseline, bench_report(rows, session.device()));
     bar->stage("taking samples");
@@ -191,9 +219,19 @@ void add_bench_command(CLI::App& program) {
         ->allow_extra_args(false)  // what follows is the scene
         ->type_name("none,grid,bvh,torus")
         ->excludes(command->get_option("--accel"));
-    command->add_flag("--denormals", options->denormals,
-                      "Time every row once more with denormal numbers taken for 0: where that is faster, lanes compute "
-                      "with them");
+    CLI::Option* denormals = command->add_flag(
+        "--denormals", options->denormals,
+        "Time every row once more with denormal numbers taken for 0: where that is faster, lanes compute with them");
+    CLI::Option* build =
+        command
+            ->add_flag("--build", options->build,
+                       "List what the driver's compiler takes from source, for each kernel and format of these variants: "
+                       "seconds of the build and of the first launch, size of the binary; nothing else is timed")
+            ->excludes(denormals);
+    add_value(*command, "--limit", options->limit,
+              "With --build: seconds that one kernel may take; exit code 4 where one takes longer")
+        ->type_name("SECONDS")
+        ->needs(build);
     add_value(*command, "--samples", options->samples,
               "Samples of each row, 1..1000; the best and the median are printed")
         ->type_name("N")
@@ -203,11 +241,13 @@ void add_bench_command(CLI::App& program) {
              "Write the rows, for a later --compare; -: stdout, and the tables on stderr");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write rates, comparison and roofline as a page for a browser; it is what raya page makes of the report. "
-             "Measures the device's peak for each format and width of lanes, some seconds each");
+             "Measures the device's peak for each format and width of lanes, some seconds each")
+        ->excludes(build);
     CLI::Option* compare =
         add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
                  "Hold the rows against those of an earlier --report: exit code 4 where a row is slower or its "
-                 "image another one");
+                 "image another one")
+            ->excludes(build);
     add_value(*command, "--tolerance", options->tolerance,
               "With --compare: percent of its rate, 0..100, that a row may lose; it is slower where its best "
               "and its median have both lost more")

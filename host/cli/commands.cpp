@@ -49,6 +49,7 @@ constexpr const char* kEnvironment =
     "  RAYA_DEVICE         the device, where there is no --device\n"
     "  RAYA_BUILD_OPTIONS  added to every kernel's build options, and told in reports\n"
     "  RAYA_TUNED          off: take the defaults, not what raya tune has kept\n"
+    "  RAYA_BINARIES       off: compile, whatever render --keep-kernels has kept\n"
     "  RAYA_PYTHON         the Python that runs studies; default: /usr/bin/python3\n"
     "  RAYA_MPIRUN         the command with which study ranks starts ranks; default: mpirun --bind-to none\n"
     "  RAYA_RANK_TIMEOUT   seconds that a rank waits for the others; default: 600\n"

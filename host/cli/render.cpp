@@ -15,8 +15,11 @@ void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) 
     refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
     if (ranks.first()) check_render(parsed, command);  // who writes; elsewhere the folders need not be there
     RenderRun run(command, ranks);
-    if (command.frames.given()) return render_frames(parsed, command, run);
-    render_image(command, run);
+    if (command.frames.given())
+        render_frames(parsed, command, run);
+    else
+        render_image(command, run);
+    if (command.keep_kernels && ranks.first()) run.session().keep_binaries();
 }
 
 }  // namespace
@@ -74,6 +77,10 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
         ->required();
     describe_render(*command, *options);
     command->get_option("--output")->required();
+    const OptionGroup kernels(*command, kKernels);
+    command->add_flag("--keep-kernels", options->keep_kernels,
+                      "Keep the binaries of this render's kernels beside the program: later renders of such scenes with "
+                      "these options, on this device and driver, compile none");
     command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 

@@ -33,7 +33,7 @@ struct RenderCommand {
     FrameOptions frames;
     KeepOptions keep;
     TraceOptions trace;
-    bool profile = false, summary = true;
+    bool profile = false, keep_kernels = false, summary = true;
     bool prints = true;                             // what --profile shows
     ProgressCallback progress{};                    // of a caller that shows it; empty: a bar on a terminal
     PixelSubset pixels{};                           // of the torus: that its primary rays are of

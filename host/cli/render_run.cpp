@@ -40,7 +40,6 @@ RenderRun::RenderRun(const RenderCommand& command, Ranks& of)
       options(command.render),
       input(read_scene_once(watch, options, of)),
       timing_(command.timing()),
-      many_(command.frames.given()),
       pictures_{command.image, command.cost, command.mask} {}
 
 RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session)
@@ -50,7 +49,6 @@ RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::D
       options(command.render),
       input(std::move(scene)),
       timing_(command.timing()),
-      many_(false),
       device_(device),
       session_(&session) {
     change_view(options.view, input.scene);
@@ -71,7 +69,6 @@ Session& RenderRun::session() {
         if (ranks.first() && !picture.empty()) load_encoder(picture);
     own_session_.emplace(watch.steps().during("open device", [&] { return Session(device_, timing_); }));
     session_ = &*own_session_;
-    if (many_) session_->keep_programs();
     if (ranks.first()) session_->announce_compiling();
     watch.observe(*session_, ranks);
     return *session_;

@@ -64,7 +64,6 @@ class RenderRun {
 
   private:
     Timing timing_;
-    bool many_;
     std::vector<std::string> pictures_;
     std::unique_ptr<TunedUse> tuned_;
     cl::Device device_;

@@ -124,9 +124,7 @@ std::string study_settings(const std::vector<std::string>& arguments) {
 }  // namespace
 
 PythonSession::PythonSession(const std::string& device)
-    : device_(choose_device_with_stacks(device)), session_(device_) {
-    session_.keep_programs();
-}
+    : device_(choose_device_with_stacks(device)), session_(device_) {}
 
 void add_study_settings(py::module_& module) {
     module.def("study_settings", study_settings, py::arg("arguments"),

@@ -60,7 +60,7 @@ BenchReport report_of(const Json& json) {
                        .driver = device.at("driver").text(),
                        .rows = {}};
     for (const Json& row : json.at("rows").elements()) report.rows.push_back(row_of(row));
-    if (report.rows.empty()) throw JsonError("it has no rows");
+    if (report.rows.empty()) throw JsonError("it has no rows of rates");
     std::set<std::string> measured;
     for (const BenchMeasurement& row : report.rows) {
         const std::string name = fmt::format("row {} of {} lanes", row.format, row.lanes);
@@ -91,6 +91,17 @@ Json to_json(const BenchReport& report) {
                    {"version", report.version},
                    {"driver", report.driver}}},
                  {"rows", rows}};
+    Json builds = Json::list();
+    for (const BenchBuild& one : report.builds)
+        builds.push_back({{"kernel", one.kernel},
+                                  {"variant", one.variant},
+                                  {"format", one.format},
+                                  {"lanes", one.lanes},
+                                  {"build_s", one.build_s},
+                                  {"first_launch_s", one.launch_s},
+                                  {"binary_bytes", one.binary_bytes},
+                                  {"build_options", one.build_options}});
+    if (!report.builds.empty()) json["builds"] = builds;
     if (!report.compared.is_null()) json["compared"] = report.compared;
     return json;
 }

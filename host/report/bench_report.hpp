@@ -29,10 +29,20 @@ struct BenchMeasurement {
     double median_rate() const { return static_cast<double>(rays) / median_s * 1e-6; }
 };
 
+/// What the driver's compiler took for a program's kernels.
+struct BenchBuild {
+    std::string kernel, variant, format;  // the program's file; of which render; of which format
+    std::uint32_t lanes = 0;
+    double build_s = 0, launch_s = 0;  // of the first launches
+    std::size_t binary_bytes = 0;
+    std::string build_options{};
+};
+
 struct BenchReport {
     std::string raya;  // version
     std::string device, platform, version, driver;
     std::vector<BenchMeasurement> rows;
+    std::vector<BenchBuild> builds{};  // with --build, which leaves `rows` empty
     Json compared{};  // compare_bench()'s, with the baseline's name; null: held against none
 };
 

@@ -1,5 +1,9 @@
 // What a person at a terminal is shown of how far a command has come.
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <cstdio>
+#include <thread>
 
 #include "host/base/progress.hpp"
 
@@ -26,6 +30,24 @@ TEST_CASE("while nothing new is known, what is left grows less, and then nothing
 
 TEST_CASE("all of the work is no more than 99 percent while it runs", "[progress]") {
     CHECK(progress_line("rendering", Done{1, 10}, 10) == "[" + std::string(40, '#') + "]  99 %  10 s so far");
+}
+
+TEST_CASE("compiling that takes long says so, and what may help", "[progress]") {
+    using namespace std::chrono_literals;
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
+    const int own = ::dup(STDERR_FILENO);
+    ::dup2(::fileno(file.get()), STDERR_FILENO);
+    {
+        const std::jthread announcing = announce_compiling("toy", 50ms);
+        std::this_thread::sleep_for(1500ms);
+    }
+    ::dup2(own, STDERR_FILENO);
+    ::close(own);
+    std::string text(1000, ' ');
+    std::rewind(file.get());
+    text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+    CHECK_THAT(text, Catch::StartsWith("raya: compiling kernels for toy (first run only) ...\nraya: still compiling after "));
+    CHECK_THAT(text, Catch::Contains("POCL_WORK_GROUP_METHOD=loops") && Catch::Contains("raya: compiling kernels took "));
 }
 
 TEST_CASE("a bar without a terminal is not active", "[progress]") {

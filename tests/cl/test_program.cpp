@@ -1,8 +1,11 @@
 // Programs and typed kernels. Needs an OpenCL device: none is a failure.
 #include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "host/base/clock.hpp"
 #include "host/cl/commands.hpp"
 #include "host/error.hpp"
 
@@ -100,13 +103,34 @@ TEST_CASE("a failed build shows log, options, device and program", "[cl]") {
     CHECK_THAT(text, Contains(session.device().platform) && Contains(session.device().name));
 }
 
-TEST_CASE("programs that are kept are built once for each text and options", "[cl]") {
+/// Programs that PoCL keeps in this test program's folder (tests/kernel_cache.hpp).
+long kept_programs() {
+    long kept = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(std::getenv("POCL_CACHE_DIR")))
+        kept += entry.path().filename() == "program.bc";
+    return kept;
+}
+
+// Else a store of kernels that outlives a run would hide one that no longer builds.
+TEST_CASE("a build that fails is kept nowhere, and fails again", "[cl]") {
+    const auto build = [](const std::string& value) {
+        const Session session(choose_device(""));
+        session.build("test", "kernel void f(global long* a) { a[0] = " + value + "; }", {});
+    };
+    const long before = kept_programs();
+    for (int times = 0; times < 2; ++times) CHECK_THROWS_AS(build("undeclared_name"), DeviceError);
+    CHECK(kept_programs() == before);
+    build(std::to_string(Clock::now().time_since_epoch().count()));  // new in each run
+    if (Session(choose_device("")).device().platform == "Portable Computing Language")
+        CHECK(kept_programs() == before + 1);
+}
+
+TEST_CASE("a program is built once for each text and options", "[cl]") {
     Session session(choose_device(""));
     StepLog steps;
     session.observe(steps, 0);
-    session.keep_programs();
     const auto build = [&](const char* shift, const std::string& source) {
-        return session.build("test", source, {shift});
+        return session.build("test", "// built once\n" + source, {shift});
     };
     build("-DRAYA_SHIFT=0.5f", kProgramSource);
     build("-DRAYA_SHIFT=0.5f", kProgramSource);

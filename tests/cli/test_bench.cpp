@@ -146,5 +146,38 @@ TEST_CASE("bench --denormals times every row twice, and makes the same image whe
     CHECK(rows[0]["hash"] == rows[1]["hash"]);
 }
 
+TEST_CASE("bench --build lists what compiling takes, and holds it against a limit", "[cli]") {
+    const ScratchFolder folder, outputs;
+    const auto build = [&](const Words& more) {
+        Words words = {"bench",     RAYA_SOURCE_DIR "/scenes/planes.nff",
+                       "--build",   "--variants", "none", "--size", "16", "--pes", "4", "--lanes", "4", "--format", "fp32"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const RunOutcome run = run_raya(build({"--report", folder / "b.json"}));
+    INFO(run.told());
+    REQUIRE(run.code == 0);
+    const Document report = json_of(folder / "b.json");
+    CHECK(report["rows"].empty());
+    const Document& builds = report["builds"];
+    REQUIRE(builds.size() == 3);
+    const char* const kernels[] = {"ring/trace.cl", "ring/filter.cl", "ring/contrast.cl"};
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(builds[i]["kernel"] == kernels[i]);
+        CHECK(builds[i]["lanes"] == 4);
+        for (const char* what : {"build_s", "first_launch_s", "binary_bytes"}) CHECK(builds[i][what] > 0);
+        CHECK_FALSE(contains(builds[i]["build_options"].get<std::string>(), "RAYA_BUILT"));
+        CHECK_THAT(run.out, Catch::Contains(kernels[i]));
+    }
+    const RunOutcome late = run_raya(build({"--limit", "0.001"}));
+    CHECK(late.code == 4);
+    CHECK_THAT(late.err, Catch::StartsWith("raya: ring/trace.cl, none, fp32, 4 lanes: ") &&
+                             Catch::Contains("to compile, above --limit 0.001 s"));
+    check_refused(outputs, build({"--limit", "0"}), 2, {"--limit 0: must be above 0"});
+    check_refused(outputs, {"bench", "--limit", "1"}, 2, {"--limit requires --build"});
+    check_refused(outputs, build({"--compare", folder / "b.json"}), 2, {"--compare", "excludes", "--build"});
+    check_refused(outputs, {"bench", "--compare", folder / "b.json"}, 2, {"it has no rows of rates"});
+}
+
 }  // namespace
 }  // namespace raya

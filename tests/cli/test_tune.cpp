@@ -41,7 +41,7 @@ std::set<std::string> ends_with(const Document& report, const std::string& knob,
 }
 
 TEST_CASE("candidates that fail, crash, hang or make another image are dropped, and renders take what is left",
-          "[cli]") {
+          "[cli][slow]") {
     const ScratchFolder kernels, cache, outputs;
     const std::string copy = write_kernels(kernels / "kernels", {kFaults}), report = outputs / "t4.json";
     const Surroundings around = tuned_in(cache);

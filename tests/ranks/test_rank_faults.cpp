@@ -5,6 +5,7 @@
 #include "tests/cli/failing_device.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/ranks/run_ranks.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -136,7 +137,7 @@ TEST_CASE("mpirun: a device that fails, or its driver, on one rank", "[ranks][.m
     const ScratchFolder outputs;
     const OneRank one;
     for (const Mpi& mpi : mpis_here())
-        for (const std::uint32_t rank : {0u, 2u}) {
+        for (const std::uint32_t rank : quick(1, {2u, 0u})) {
             const std::string name = "raya: rank " + std::to_string(rank) + " on ";
             const auto run = [&](const std::string& fault, const Words& options) {
                 return run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", fault),
@@ -163,7 +164,7 @@ TEST_CASE("mpirun: a rank out of memory", "[ranks][.mpirun]") {
     for (const Mpi& mpi : mpis_here()) {
         run_ranks(mpi, on(mpi, 2, large));  // its kernels are built now
         std::filesystem::remove(outputs / "x.pfm");
-        for (const std::uint32_t rank : {0u, 2u})
+        for (const std::uint32_t rank : quick(1, {2u, 0u}))
             check_told(
                 outputs,
                 run_ranks(mpi, one.words(mpi, 3, rank, preload(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"), large)),
@@ -192,11 +193,11 @@ TEST_CASE("mpirun: a rank that is killed, Ctrl-C and its kin end all ranks", "[r
     const std::string file = messages / "rank_0.txt";
     const Surroundings patient{.variables = {{"OMPI_MCA_odls_base_sigkill_timeout", "4"}}};
     for (const Mpi& mpi : mpis_here())
-        for (const char* machine : {"grande", "torus"}) {
+        for (const char* machine : quick(1, {"grande", "torus"})) {
             const Words words = on(mpi, 3, long_render(outputs, machine));
-            for (const std::uint32_t rank : {0u, 2u})
+            for (const std::uint32_t rank : quick(1, {2u, 0u}))
                 check_ended(outputs, run_ranks(mpi, words, 3, {.signal = SIGKILL, .rank = rank}), 1);
-            for (const int signal : {SIGINT, SIGTERM}) {
+            for (const int signal : quick(1, {SIGINT, SIGTERM})) {
                 const Words redirected = one.words(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
                 check_ended(outputs, run_ranks(mpi, redirected, 3, {.signal = signal}, patient), 0);
                 CHECK(file_contents(file) == "raya: interrupted\n");

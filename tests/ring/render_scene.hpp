@@ -10,6 +10,7 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/nff.hpp"
 #include "tests/paths.h"
+#include "tests/thorough.hpp"
 
 namespace raya {
 
@@ -18,8 +19,8 @@ struct RingCase {
     std::uint32_t pes = 64, offset = 8;
     Fold fold = Fold::kCyclic;
     std::string machine = "grande";
-    std::optional<MappingRule> mapping{};             // empty: the cyclic one, by offset and fold
-    std::uint32_t lanes = 0, group = 0, bounces = 8;  // lanes, group 0: the device's own
+    std::optional<MappingRule> mapping{};                         // empty: the cyclic one, by offset and fold
+    std::uint32_t lanes = usual_lanes(), group = 0, bounces = 8;  // lanes, group 0: the device's own
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
     bool filter = true;

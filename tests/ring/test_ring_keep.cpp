@@ -73,7 +73,6 @@ TEST_CASE("a render that is stopped anywhere and goes on makes the same image an
     CAPTURE(seed);
     std::mt19937 random(seed);
     Session session(choose_device(""));
-    session.keep_programs();
     const Scene scene = project_scene("planes");
     const std::pair<AntialiasMethod, std::uint64_t> cases[] = {{AntialiasMethod::kNone, 1 << 22},
                                                                {AntialiasMethod::kNone, 500},
@@ -158,7 +157,6 @@ TEST_CASE("a state of another render is refused by what is different", "[ring][k
 
 TEST_CASE("a checkpoint whose vectors have other sizes than the render's is refused, its hash right", "[ring][keep]") {
     Session session(choose_device(""));
-    session.keep_programs();
     const Scene scene = project_scene("planes");
     for (const AntialiasMethod method : {AntialiasMethod::kNone, AntialiasMethod::kSupersample}) {
         CAPTURE(antialias_name(method));

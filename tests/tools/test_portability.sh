@@ -26,6 +26,13 @@ case $1 in
         echo '{"devices": [{"checks": ['"${check:+{\"layer\": \"$layer\", $check\}}"']}]}' >"$4"
         [[ ! -e $0.crash ]] || kill -SEGV $$ ;;
     devices) printf '#  device  platform\n0  toy  Toy\n\n0: OpenCL 3.0, driver 1\n' ;;
+    bench)
+        code=0
+        [[ ! -e $0.budget ]] || code=4
+        while [[ $1 != --report ]]; do shift; done
+        echo '{"builds": [{"build_s": 1, "first_launch_s": 0.5}, {"build_s": 0.2, "first_launch_s": 0.1}]}' >"$2"
+        ((code == 0)) || echo "raya: trace: 1.5 s to compile, above --limit 1 s" >&2
+        exit "$code" ;;
     render)
         while [[ $1 != --report ]]; do shift; done
         [[ -e $0.hash ]] && right=$(<"$0.hash") || right=5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a
@@ -68,6 +75,15 @@ while IFS=, read -r scene options hash counts; do
     proved=$((proved + ${#known} / 32))
 done < <(grep -v '^#' "$real")
 ((proved == 7)) || fail "$proved images of $real are in host/verify/pictures.txt, not 7"
+matrix --only "PoCL loopvec" --checks build
+((code == 0)) || fail "exit code $code of a compiler that is quick enough"
+expect "| 1.5 s |"
+: >"$build/raya.budget"
+matrix --only "PoCL loopvec" --checks build
+((code == 1)) || fail "exit code $code of a compiler that is too slow"
+expect "| FAIL 1.5 s |"
+expect "above --limit 1 s"
+rm "$build/raya.budget"
 echo 11111111111111111111111111111111 >"$build/raya.hash"
 matrix --only "PoCL loopvec" --checks renders
 ((code == 1)) || fail "exit code $code where the only implementation makes another image"
@@ -92,7 +108,7 @@ unset RAYA_BUILD_OPTIONS POCL_DEVICES OCL_ICD_VENDORS RAYA_NUMBER_CASES
 ((code == 0)) || fail "exit code $code where all is right"
 expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | 1 known |"
 expect "PoCL loopvec, image: SKIP groups: one work-item only"
-[[ $out == *$'\n'"7 cells: 4 right, 0 FAIL, 3 not decided." ]] || fail "the last line does not count the cells"
+[[ $out == *$'\n'"8 cells: 5 right, 0 FAIL, 3 not decided." ]] || fail "the last line does not count the cells"
 expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 in place of 9: a reason"
 
 matrix --only PoCL

@@ -154,6 +154,7 @@ class Reports:
         self.one("bench", "bench", scene, *few, "base.json", of="base.json")
         self.one("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *few, "r.json")
         self.one("bench", "bench", scene, "--variants", "none", *few, "r.json")
+        self.one("bench", "bench", scene, "--build", "--variants", "none,torus", *few, "r.json")
         self.tune(scene)
         check = ["verify", "--brief", "--lanes", "1", "--only", "machine mapping: rows", "--report", "r.json"]
         self.one("verify", *check)

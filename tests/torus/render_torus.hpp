@@ -14,6 +14,7 @@
 #include "tests/kernels/random_scene.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/scene/random_below.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 
@@ -24,8 +25,8 @@ struct TorusCase {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     PacketCharge packets{};
-    std::uint32_t queue = 0;             // 0: as many packets as there are by default
-    std::uint32_t lanes = 0, group = 0;  // 0: the device's own
+    std::uint32_t queue = 0;                         // 0: as many packets as there are by default
+    std::uint32_t lanes = usual_lanes(), group = 0;  // 0: the device's own
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};

@@ -132,7 +132,7 @@ TEST_CASE("links go as the device was tuned to, unless they are named", "[torus]
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kRichScenes[0]);
     const auto rendered = [&](LinkMove named) {
-        const TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .bounces = 1, .link_move = named};
+        const TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 0, .bounces = 1, .link_move = named};
         return render_torus(session, scene, c);
     };
     const bool cpu = session.device().type == "cpu";

@@ -1,0 +1,63 @@
+#include "host/cli/bench_build.hpp"
+
+#include <fmt/core.h>
+
+#include "host/base/clock.hpp"
+#include "host/cli/bench_rows.hpp"
+#include "host/report/table.hpp"
+
+namespace raya {
+namespace {
+
+std::string seconds(double s) { return fmt::format("{:.2f}", s); }
+
+}  // namespace
+
+std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingSettings settings,
+                                     const std::vector<NumberFormat>& formats,
+                                     const std::vector<std::string>& variants) {
+    // Drivers know a kernel again by its source and options.
+    const std::string unlike_others = fmt::format("-DRAYA_BUILT={}", Clock::now().time_since_epoch().count());
+    settings.kernels.sources.more_options.push_back(unlike_others);
+    std::vector<KernelBuild> noted;
+    session.note_builds(&noted);
+    std::vector<BenchBuild> builds;
+    for (const NumberFormat& format : formats) {
+        for (const std::string& variant : variants) {
+            RingSettings s = settings;
+            std::uint32_t lanes = render_row(session, scene, s, format, variant).said.lanes;
+            if (variant != "torus" && variant == variants.front() && !s.dynamic)
+                for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
+                    s.antialias.method = method;
+                    lanes = render_row(session, scene, s, format, variant).said.lanes;
+                }
+            for (KernelBuild& one : noted) {
+                std::string& options = one.options;
+                if (const auto at = options.find(unlike_others); at != options.npos)
+                    options.erase(at > 0 ? at - 1 : at, unlike_others.size() + (at > 0 ? 1 : 0));
+                builds.push_back({.kernel = one.name, .variant = variant, .format = format_name(format), .lanes = lanes,
+                                  .build_s = one.build_s, .launch_s = one.launch_s, .binary_bytes = one.binary_bytes(),
+                                  .build_options = options});
+            }
+            noted.clear();
+        }
+    }
+    session.note_builds(nullptr);
+    return builds;
+}
+
+void print_builds(const std::vector<BenchBuild>& builds) {
+    std::vector<std::vector<std::string>> table = {
+        {"kernel", "variant", "format", "lanes", "build s", "first launch s", "binary KB"}};
+    double build_s = 0, launch_s = 0;
+    for (const BenchBuild& one : builds) {
+        table.push_back({one.kernel, one.variant, one.format, std::to_string(one.lanes), seconds(one.build_s),
+                         seconds(one.launch_s), fmt::format("{:.0f}", 1e-3 * static_cast<double>(one.binary_bytes))});
+        build_s += one.build_s;
+        launch_s += one.launch_s;
+    }
+    fmt::print("{}first launch: with what the driver compiles then, and the launch itself\n", text_table(table));
+    fmt::print("in all {} s of builds and {} s of first launches\n", seconds(build_s), seconds(launch_s));
+}
+
+}  // namespace raya
