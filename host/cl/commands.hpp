@@ -162,7 +162,7 @@ class Session {
     /// From now on compiling() says what it does.
     void announce_compiling() { announces_ = true; }
 
-    /// From now on `builds` gets an entry for each program that is built and is told of its kernels' first launches;
+    /// From now on `builds` gets an entry for each program that is built, with its kernels' first launches;
     /// null: no longer.
     void note_builds(std::vector<KernelBuild>* builds) { builds_ = builds; }
 

@@ -24,6 +24,12 @@ bool switched_off() {
 }  // namespace
 
 fs::path kernel_binary_file(const cl::Device& device, const std::string& source, const std::string& options) {
+    fs::path folder;
+    try {
+        folder = module_folder();
+    } catch (const ModuleError&) {
+        return {};
+    }
     const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
     std::string key;
     for (const std::string& part : {platform.getInfo<CL_PLATFORM_NAME>(), platform.getInfo<CL_PLATFORM_VERSION>(),
@@ -31,20 +37,15 @@ fs::path kernel_binary_file(const cl::Device& device, const std::string& source,
         key += part + '\n';
     key += source;
     const XXH128_hash_t hash = XXH3_128bits(key.data(), key.size());
-    return module_folder() / "kernels" / fmt::format("{:016x}{:016x}.bin", hash.high64, hash.low64);
+    return folder / "kernels" / fmt::format("{:016x}{:016x}.bin", hash.high64, hash.low64);
 }
 
-std::optional<KernelBinary> read_kernel_binary(const cl::Device& device, const std::string& source,
-                                               const std::string& options) {
-    if (switched_off()) return {};
+std::optional<KernelBinary> read_kernel_binary(const fs::path& file) {
+    std::error_code none;
+    if (switched_off() || !fs::exists(file, none) || !writers_besides_owner(file).empty()) return {};
     try {
-        const fs::path file = kernel_binary_file(device, source, options);
-        std::error_code none;
-        if (!fs::exists(file, none) || !writers_besides_owner(file).empty()) return {};
         const std::string bytes = read_file(file);
         return KernelBinary(bytes.begin(), bytes.end());
-    } catch (const ModuleError&) {
-        return {};
     } catch (const UserError&) {  // it cannot be read: compiled instead
         return {};
     }

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "host/base/module.hpp"
 #include "host/base/say.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
@@ -95,19 +94,17 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         throw;
     }
     log_ = log_of(program_, device);
-    try {
-        binary_file_ = kernel_binary_file(device, source, options_);
-    } catch (const ModuleError&) {
-    }
 }
 
 bool Program::takes_binary(const cl::Context& context, const cl::Device& device, const std::string& source) {
     try {
-        const std::optional<KernelBinary> binary = read_kernel_binary(device, source, options_);
+        binary_file_ = kernel_binary_file(device, source, options_);
+        const std::optional<KernelBinary> binary = read_kernel_binary(binary_file_);
         if (!binary) return false;
         program_ = cl::Program(context, {device}, {*binary});
         const DriverCall call("loading a kernel's binary");
         program_.build(device, options_.c_str());
+        binary_file_.clear();
         tell(kDetailed, fmt::format("build {}: from the binary that came with raya\n", name_));
         return true;
     } catch (const cl::Error& error) {

@@ -94,13 +94,13 @@ Json to_json(const BenchReport& report) {
     Json builds = Json::list();
     for (const BenchBuild& one : report.builds)
         builds.push_back({{"kernel", one.kernel},
-                                  {"variant", one.variant},
-                                  {"format", one.format},
-                                  {"lanes", one.lanes},
-                                  {"build_s", one.build_s},
-                                  {"first_launch_s", one.launch_s},
-                                  {"binary_bytes", one.binary_bytes},
-                                  {"build_options", one.build_options}});
+                          {"variant", one.variant},
+                          {"format", one.format},
+                          {"lanes", one.lanes},
+                          {"build_s", one.build_s},
+                          {"first_launch_s", one.launch_s},
+                          {"binary_bytes", one.binary_bytes},
+                          {"build_options", one.build_options}});
     if (!report.builds.empty()) json["builds"] = builds;
     if (!report.compared.is_null()) json["compared"] = report.compared;
     return json;

@@ -146,7 +146,7 @@ TEST_CASE("bench --denormals times every row twice, and makes the same image whe
     CHECK(rows[0]["hash"] == rows[1]["hash"]);
 }
 
-TEST_CASE("bench --build lists what compiling takes, and holds it against a limit", "[cli]") {
+TEST_CASE("bench --build lists what compiling takes, and a kernel above --limit is exit code 4", "[cli]") {
     const ScratchFolder folder, outputs;
     const auto build = [&](const Words& more) {
         Words words = {"bench",     RAYA_SOURCE_DIR "/scenes/planes.nff",
