@@ -17,7 +17,7 @@ void hits_of_all(__global const uint* restrict job,
 
 #if RAYA_ACCEL != RAYA_ACCEL_NONE
 // `shadow`: any hit will do.
-static inline hit searched_hit(words job, const ray* r, int shadow) {
+RAYA_KERNEL_BODY hit searched_hit(words job, const ray* r, int shadow) {
     tree t;
     ray_pool pool;
     clear_tree(&t);

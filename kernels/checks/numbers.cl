@@ -6,15 +6,7 @@
 #include "kernels/checks/rows.clh"
 #include "kernels/number/power.clh"
 
-__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; from_index takes a's bits
-                const uint rows,
-                __global uint* restrict results)          // [12][rows], in the order below
-{
-    const uint first = get_group_id(0) * RAYA_LANES;
-    const real a = load_lanes(operands + first, 1), b = load_lanes(operands + rows + first, 1);
-    const real c = load_lanes(operands + 2 * rows + first, 1);
-    __global uint* to = results + first;
+RAYA_KERNEL_BODY void do_operations(real a, real b, real c, __global uint* to, uint rows) {
     store_bits(to, 1, num_add(a, b));
     store_bits(to + rows, 1, num_sub(a, b));
     store_bits(to + 2 * rows, 1, num_mul(a, b));
@@ -27,6 +19,17 @@ void operations(__global const float* restrict operands,  // [3][rows]: a, b, c;
     store_bits(to + 9 * rows, 1, num_round(a));
     store_bits(to + 10 * rows, 1, num_from_index(as_lanes_uint(a)));
     store_bits(to + 11 * rows, 1, num_power(a, b));
+}
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; from_index takes a's bits
+                const uint rows,
+                __global uint* restrict results)          // [12][rows], in the order below
+{
+    const uint first = get_group_id(0) * RAYA_LANES;
+    const real a = load_lanes(operands + first, 1), b = load_lanes(operands + rows + first, 1);
+    const real c = load_lanes(operands + 2 * rows + first, 1);
+    do_operations(a, b, c, results + first, rows);
 }
 
 // What has no known answers: a kernel of its own, as its compilation takes time.

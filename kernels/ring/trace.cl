@@ -70,14 +70,13 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     }
 }
 
-// As trace_trees(); trees that the last launch has kept in `kept` are gone on with, if it `goes_on`, and those that are
-// left are kept there.
-static inline int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work,
-                              __global uint* kept, int goes_on) {
+// As trace_trees(); where it `goes_on`, it takes the trees that the last launch has kept from `taken`, and it puts those
+// that are left into `put`.
+RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work, keeper taken,
+                                 keeper put, int goes_on) {
     tree trees[RAYA_TREES];
     tree_pixels pixels[RAYA_TREES];
     index left = (index)(0);
-    keeper taken = open_keeper(kept, 1), put = open_keeper(kept, 0);
     if (goes_on) keep_index(&taken, &left);
     for (uint i = 0; i < RAYA_TREES; ++i) {
         clear_tree(&trees[i]);
@@ -141,7 +140,8 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.marks = marks + (size_t)group * capacity;
     store.cycles = cycles + (size_t)group * capacity;
     open_store(&store);
-    if (trace_share(scene, &store, &mine->next, work, kept, goes_on)) atomic_inc(&mine->left);
+    const keeper taken = open_keeper(kept, 1), put = open_keeper(kept, 0);
+    if (trace_share(scene, &store, &mine->next, work, taken, put, goes_on)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
     for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += sum_of(store.totals[e]);
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);

@@ -121,7 +121,7 @@ static inline void tell_costs(const flight* f, uint end, __global raya_treated* 
 
 // Treats the packets of the queue's slots first .. end - 1, at most V, that are in voxels
 // of this node or outside the box.
-static inline void treat_slots(const node* n, flight* f, uint first, uint end) {
+RAYA_KERNEL_BODY void treat_slots(const node* n, flight* f, uint first, uint end) {
     load_flight(f, first, end);
     lanes_index waiting;
     const index kind = kinds_of(f);
